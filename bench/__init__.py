@@ -1,0 +1,79 @@
+"""strapbench: a test bench that tells the truth about strapdown navigation algorithms.
+
+A prescribed motion goes through a MuJoCo rig to become what the sensors feel,
+through error models to become what they report, through a solver to become an
+estimate, and through an evaluation to become evidence::
+
+    motion -> rig (MuJoCo) -> imu errors -> solver -> evaluation -> result -> record / report
+
+Frames
+    i inertial (MuJoCo's world), e Earth-fixed, n navigation (east, north, up),
+    b body (x right, y forward, z up). Superscript frame last: ``omega_ib_b`` is the
+    rate of b relative to i, in b-components.
+Attitude
+    ``q_nb`` and ``C_nb`` take b-components to n-components. Quaternions are Hamilton,
+    wxyz. Euler angles: yaw psi about z (anticlockwise, zero when body y points north),
+    pitch P about x, roll R about y, ``C_nb = Rz(psi) Rx(P) Ry(R)``.
+Units
+    SI and radians. Any other unit is in the name (``half_angle_deg``).
+Arrays
+    ``(n, k)``, time first, float64. Times are ``t0 + k / rate`` from integers.
+Inputs of solvers
+    `Readings` are instantaneous (rad/s, m/s^2); `Increments` are integrals over each
+    sampling interval (rad, m/s). They are different inputs and never mixed.
+Seeds
+    One ``numpy.random.SeedSequence``; trial k alone or in a campaign has the same bits.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from bench.errors import (
+    AccuracyError,
+    BenchError,
+    InputError,
+    ObservabilityError,
+    OutputError,
+    UnknownNameError,
+)
+from bench.motion import Motion
+from bench.signals import Accelerometers, GyroFreeSolution, Increments, Initial, Kinematics, Readings
+
+if TYPE_CHECKING:
+    from bench.experiment import run
+    from bench.rig import Rig
+    from bench.solvers import solver
+
+__version__ = "0.1.0"
+
+# Names whose modules need more than numpy, imported when first used: `import bench` stays fast.
+_LAZY = {"Rig": "bench.rig", "solver": "bench.solvers", "run": "bench.experiment"}
+
+__all__ = [
+    "Accelerometers",
+    "AccuracyError",
+    "BenchError",
+    "GyroFreeSolution",
+    "Increments",
+    "Initial",
+    "InputError",
+    "Kinematics",
+    "Motion",
+    "ObservabilityError",
+    "OutputError",
+    "Readings",
+    "Rig",
+    "UnknownNameError",
+    "run",
+    "solver",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name in _LAZY:
+        return getattr(import_module(_LAZY[name]), name)
+    raise AttributeError(f"module 'bench' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -1,0 +1,157 @@
+"""Errors worth catching, and the small checks that raise them.
+
+Every message names the argument, the rule and the value, so that bad input is
+mended at the first reading. Checks run at public entry points, never in kernels.
+"""
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+
+class BenchError(Exception):
+    """Base of all errors that strapbench raises on purpose."""
+
+
+class InputError(BenchError, ValueError):
+    """An argument breaks a rule; the message names the argument, the rule and the value."""
+
+
+class UnknownNameError(InputError):
+    """A name that is not registered; the message lists the valid ones."""
+
+    def __init__(self, kind: str, name: object, valid: Iterable[str]):
+        valid = sorted(valid)
+        close = get_close_matches(str(name), valid, n=1)
+        hint = f" (did you mean {close[0]!r}?)" if close else ""
+        super().__init__(f"unknown {kind} {name!r}{hint}; valid: {', '.join(valid) or 'none'}")
+
+
+class AccuracyError(BenchError):
+    """A requested accuracy cannot be reached; nothing less accurate is returned."""
+
+
+class ObservabilityError(BenchError):
+    """The sensors do not determine what was asked for; the message gives rank and lost directions."""
+
+
+class OutputError(BenchError):
+    """A result cannot be written, or would overwrite another."""
+
+
+def require_array(name: str, value: ArrayLike, shape: tuple[int | None, ...]) -> Array:
+    """Return `value` as a C-contiguous float64 array of the given shape, all finite.
+
+    Parameters
+    ----------
+    name : str
+        Name of the argument, for the message.
+    value : array_like
+    shape : tuple of int or None
+        Expected shape; None admits any positive length.
+
+    Raises
+    ------
+    InputError
+        If the value is not numeric, has another shape, is empty, or holds a NaN or an infinity.
+    """
+    try:
+        array = np.ascontiguousarray(value, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{name} must be an array of real numbers, got {value!r}") from error
+    expected = "(" + ", ".join("n" if k is None else str(k) for k in shape) + ("," if len(shape) == 1 else "") + ")"
+    if array.ndim != len(shape) or any(k is not None and k != n for k, n in zip(shape, array.shape, strict=True)):
+        raise InputError(f"{name} must have shape {expected}, got {np.shape(value)}")
+    if array.size == 0:
+        raise InputError(f"{name} must not be empty, got shape {array.shape}")
+    if not np.isfinite(array).all():
+        where = np.argwhere(~np.isfinite(array))[0]
+        index = ", ".join(str(i) for i in where)
+        raise InputError(f"{name} must be finite, got {array[tuple(where)]} at [{index}]")
+    return array
+
+
+def require_scalar(name: str, value: Any, *, positive: bool = False, minimum: float | None = None) -> float:
+    """Return `value` as a finite float, optionally > 0 or >= `minimum`.
+
+    Raises
+    ------
+    InputError
+        If it is not one real number, not finite, or breaks the bound.
+    """
+    rule = "a positive number" if positive else "a number" if minimum is None else f"a number >= {minimum:g}"
+    try:
+        if isinstance(value, (bool, str, bytes)) or np.ndim(value) != 0:
+            raise TypeError
+        number = float(value)
+    except (TypeError, ValueError):
+        raise InputError(f"{name} must be {rule}, got {value!r}") from None
+    if not np.isfinite(number) or (positive and number <= 0) or (minimum is not None and number < minimum):
+        raise InputError(f"{name} must be {'finite and ' if not np.isfinite(number) else ''}{rule}, got {value!r}")
+    return number
+
+
+def require_integer(name: str, value: Any, *, minimum: int) -> int:
+    """Return `value` as an int >= `minimum`.
+
+    Raises
+    ------
+    InputError
+        If it is not an integer or below the minimum.
+    """
+    if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)) or value < minimum:
+        raise InputError(f"{name} must be an integer >= {minimum}, got {value!r}")
+    return int(value)
+
+
+def require_times(name: str, value: ArrayLike) -> Array:
+    """Return strictly increasing finite times, shape (n,), s.
+
+    Raises
+    ------
+    InputError
+        As `require_array`, or if two times are equal or out of order.
+    """
+    t = require_array(name, value, (None,))
+    step = np.diff(t)
+    if (step <= 0).any():
+        k = int(np.argmax(step <= 0))
+        raise InputError(f"{name} must increase strictly, got {name}[{k}] = {t[k]}, {name}[{k + 1}] = {t[k + 1]}")
+    return t
+
+
+def require_choice(name: str, value: object, choices: Iterable[str]) -> str:
+    """Return `value` if it is one of `choices`.
+
+    Raises
+    ------
+    UnknownNameError
+        Otherwise; it lists the choices.
+    """
+    choices = list(choices)
+    if value not in choices:
+        raise UnknownNameError(name, value, choices)
+    return str(value)
+
+
+def require_unit_quaternion(name: str, value: ArrayLike, shape: tuple[int | None, ...] = (4,)) -> Array:
+    """Return unit quaternions (wxyz), norm 1 within 1e-9.
+
+    Raises
+    ------
+    InputError
+        As `require_array`, or if a norm differs from 1 by more than 1e-9 (MuJoCo would normalise it silently).
+    """
+    q = require_array(name, value, shape)
+    norm = np.sqrt(np.einsum("...i,...i->...", q, q))
+    bad = np.abs(norm - 1.0) > 1e-9
+    if np.any(bad):
+        k = np.argmax(bad) if bad.ndim else None
+        where = "" if k is None else f" in row {k}"
+        raise InputError(f"{name} must be unit quaternions (wxyz), got norm {np.atleast_1d(norm)[k or 0]!r}{where}")
+    return q
