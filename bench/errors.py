@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.intp]
 
 
 class BenchError(Exception):
@@ -67,7 +68,7 @@ def require_array(name: str, value: ArrayLike, shape: tuple[int | None, ...]) ->
     expected = "(" + ", ".join("n" if k is None else str(k) for k in shape) + ("," if len(shape) == 1 else "") + ")"
     if array.ndim != len(shape) or any(k is not None and k != n for k, n in zip(shape, array.shape, strict=True)):
         raise InputError(f"{name} must have shape {expected}, got {np.shape(value)}")
-    if array.size == 0:
+    if any(k is None and n == 0 for k, n in zip(shape, array.shape, strict=True)):
         raise InputError(f"{name} must not be empty, got shape {array.shape}")
     if not np.isfinite(array).all():
         where = np.argwhere(~np.isfinite(array))[0]

@@ -27,9 +27,12 @@ def _sources_digest() -> str:
 
 
 def cache_dir() -> Path:
-    """Return the folder of compiled kernels, in the user's cache folder or, if that is not writable, a temporary one."""
+    """Return the folder of compiled kernels: in the user's cache folder or, if not writable, a temporary one."""
     base = Path(os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser())
-    for parent in (base, Path(tempfile.gettempdir()) / f"strapbench-{os.getuid() if hasattr(os, 'getuid') else 'user'}"):
+    for parent in (
+        base,
+        Path(tempfile.gettempdir()) / f"strapbench-{os.getuid() if hasattr(os, 'getuid') else 'user'}",
+    ):
         folder = parent / "strapbench" / f"numba-{_sources_digest()}"
         try:
             folder.mkdir(parents=True, exist_ok=True)

@@ -68,3 +68,6 @@ WANG = Source(
     "Wang Zhenhuan, Chen Xijun, Zeng Qingshuang: Rotation vector and dual quaternion strapdown algorithms in "
     "the inertial frame, Harbin Institute of Technology",
 )
+HG9900 = Source("HG9900", "Honeywell: HG9900 inertial measurement unit, brochure N61-1638-000-000")
+HG1700 = Source("HG1700", "Honeywell: HG1700 inertial measurement unit, brochure N61-1619-000-001")
+ADIS16495 = Source("ADIS16495", "Analog Devices: ADIS16495 data sheet, Rev. C, 2020")

@@ -44,7 +44,7 @@ def discover(package: str, base: type[T]) -> dict[str, type[T]]:
     for module in _modules(package):
         for _, cls in inspect.getmembers(module, inspect.isclass):
             if issubclass(cls, base) and cls.__module__ == module.__name__ and "name" in vars(cls):
-                _add(found, cls.name, cls)
+                _add(found, vars(cls)["name"], cls)
     return found
 
 

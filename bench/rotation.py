@@ -154,9 +154,7 @@ def euler_from_matrix(C_nb: ArrayLike) -> tuple[Array, Array, Array]:
     cosine = np.hypot(C[..., 0, 1], C[..., 1, 1])
     P = np.arctan2(C[..., 2, 1], cosine)
     pole = cosine < 1e-14
-    psi = np.where(
-        pole, np.arctan2(C[..., 1, 0], C[..., 0, 0]), np.arctan2(-C[..., 0, 1], C[..., 1, 1])
-    )
+    psi = np.where(pole, np.arctan2(C[..., 1, 0], C[..., 0, 0]), np.arctan2(-C[..., 0, 1], C[..., 1, 1]))
     R = np.where(pole, 0.0, np.arctan2(-C[..., 2, 0], C[..., 2, 2]))
     return psi, P, R
 

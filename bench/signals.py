@@ -18,6 +18,12 @@ def _rows(name: str, value: ArrayLike, width: int) -> Array:
     return require_array(name, array[np.newaxis] if array.ndim == 1 else array, (None, width))
 
 
+def _channels(name: str, value: ArrayLike, n: int) -> Array:
+    """Check one (n, m) field; a rig without accelerometers has m = 0."""
+    width = np.shape(value)[1] if np.ndim(value) == 2 else None
+    return require_array(name, value, (n, width))
+
+
 @dataclass(frozen=True, eq=False)
 class Kinematics:
     """True motion of the body frame b in the inertial frame i at n times.
@@ -61,6 +67,20 @@ class Kinematics:
 
     def __len__(self) -> int:
         return len(self.position)
+
+    def repeated(self, n: int) -> "Kinematics":
+        """Return n rows like the only one.
+
+        Raises
+        ------
+        InputError
+            If there are several rows, and not n.
+        """
+        if len(self) == n:
+            return self
+        if len(self) != 1:
+            raise InputError(f"kinematics must have 1 or {n} rows, got {len(self)}")
+        return Kinematics(**{f.name: np.repeat(getattr(self, f.name), n, axis=0) for f in fields(self)})
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,9 +135,7 @@ class Readings:
     def __post_init__(self) -> None:
         t = require_array("t", self.t, (None,))
         object.__setattr__(self, "t", t)
-        object.__setattr__(
-            self, "accelerometers", require_array("accelerometers", self.accelerometers, (len(t), None))
-        )
+        object.__setattr__(self, "accelerometers", _channels("accelerometers", self.accelerometers, len(t)))
         if self.gyro is not None:
             object.__setattr__(self, "gyro", require_array("gyro", self.gyro, (len(t), 3)))
 
@@ -157,7 +175,7 @@ class Increments:
         require_scalar("dt", self.dt, positive=True)
         t = require_array("t", self.t, (None,))
         object.__setattr__(self, "t", t)
-        object.__setattr__(self, "dvel", require_array("dvel", self.dvel, (len(t), None)))
+        object.__setattr__(self, "dvel", _channels("dvel", self.dvel, len(t)))
         if self.dtheta_b is not None:
             object.__setattr__(self, "dtheta_b", require_array("dtheta_b", self.dtheta_b, (len(t), 3)))
 

@@ -5,6 +5,7 @@ next state and the chunk's solution, ``solve`` is the loop over chunks, written 
 per kind. To add an algorithm, put one file into the folder of its kind.
 """
 
+from dataclasses import fields
 from importlib import import_module
 from typing import Any
 
@@ -38,7 +39,7 @@ def solver(kind: str, name: str, **options: Any) -> Any:
     """
     found = solvers(kind)
     cls = found[require_choice(f"{kind} solver", name, found)]
-    known = list(cls.__dataclass_fields__)
+    known = [field.name for field in fields(cls)]
     for option in options:
         if option not in known:
             raise InputError(f"{name} has no option {option!r}; options: {', '.join(known) or 'none'}")
