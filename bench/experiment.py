@@ -1,0 +1,305 @@
+"""Experiments: a paper's conditions and claims as data, and the one way to run them.
+
+An `Experiment` names its conditions (each stated or assumed), its claims and three
+functions: `items` cuts the work, `measure` does one piece, `evaluate` turns the rows
+into tables, verdicts and figures. Running, resuming, writing and reporting are generic.
+"""
+
+import platform
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, fields
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, Literal
+
+from bench.campaign import Item, open_executor, run_campaign
+from bench.errors import InputError, require_choice, require_integer
+from bench.figures import Figure
+from bench.references import Source
+from bench.registry import discover_objects
+from bench.table import Table
+
+Judgement = Literal["holds", "does not hold", "cannot be judged"]
+
+
+@dataclass(frozen=True)
+class Condition:
+    """One condition of an experiment, and whether the source states it.
+
+    Attributes
+    ----------
+    name, value : str
+        With the unit in the value.
+    status : "stated" or "assumed"
+    note : str
+        Why, where it is assumed.
+    """
+
+    name: str
+    value: str
+    status: Literal["stated", "assumed"]
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class Claim:
+    """What the source says, before anything is measured.
+
+    Attributes
+    ----------
+    key : str
+        Unique within the experiment.
+    published : str
+        The value or statement, as printed.
+    place : str
+        Where it stands in the source.
+    judged_by : str
+        The rule of the verdict; it follows from the printed digits or statement.
+    """
+
+    key: str
+    published: str
+    place: str
+    judged_by: str
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What became of a claim: the measured value and one sentence of reason."""
+
+    claim: Claim
+    judgement: Judgement
+    measured: str
+    reason: str
+
+
+@dataclass(frozen=True, eq=False)
+class Evaluation:
+    """What `Experiment.evaluate` returns.
+
+    Attributes
+    ----------
+    verdicts : sequence of Verdict
+        One for each claim.
+    tables : dict of str to Table
+        For the report, by file name.
+    figures : sequence of Figure
+    summary : str
+        One paragraph of Markdown: what was found.
+    focus : Any
+        What the recording shows (a work item, a trial), passed to `Experiment.record`.
+    """
+
+    verdicts: Sequence[Verdict]
+    tables: Mapping[str, Table]
+    figures: Sequence[Figure]
+    summary: str
+    focus: Any = None
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """One experiment of a paper.
+
+    Attributes
+    ----------
+    name, title : str
+    source : Source
+    conditions : tuple of Condition
+    claims : tuple of Claim
+    options : type
+        Frozen dataclass with defaults; the command line is made from it.
+    items : callable
+        (options, seed) -> list of Item.
+    measure : callable
+        Work of an item -> Table. Module-level, so that worker processes find it.
+    evaluate : callable
+        (options, seed, rows) -> Evaluation.
+    record : callable, optional
+        (options, seed, evaluation, path) -> None: writes the recording.
+    """
+
+    name: str
+    title: str
+    source: Source
+    conditions: tuple[Condition, ...]
+    claims: tuple[Claim, ...]
+    options: type
+    items: Callable[[Any, int], list[Item]]
+    measure: Callable[[Any], Table]
+    evaluate: Callable[[Any, int, Table], Evaluation]
+    record: Callable[[Any, int, Evaluation, Path], None] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """Everything a run found.
+
+    Attributes
+    ----------
+    experiment : Experiment
+    options : dataclass instance
+    seed : int
+    versions : dict
+        Of strapbench, Python and the packages that compute.
+    rows : Table
+        What was measured, one row per item, trial and time.
+    evaluation : Evaluation
+    folder : Path or None
+        Where it was written.
+    files : dict of str to Path
+        Report, recording and so on.
+    """
+
+    experiment: Experiment
+    options: Any
+    seed: int
+    versions: dict[str, str]
+    rows: Table
+    evaluation: Evaluation
+    folder: Path | None = None
+    files: dict[str, Path] = field(default_factory=dict)
+
+    @property
+    def verdicts(self) -> Sequence[Verdict]:
+        """One verdict for each claim."""
+        return self.evaluation.verdicts
+
+    @property
+    def tables(self) -> Mapping[str, Table]:
+        """The tables of the report."""
+        return self.evaluation.tables
+
+    def inputs(self) -> dict[str, Any]:
+        """Return what determines the result, as plain data."""
+        return inputs_of(self.experiment, self.options, self.seed)
+
+
+@dataclass
+class Reporter:
+    """How a run tells what it does; the default is silent."""
+
+    say: Callable[[str], None] = lambda text: None
+    progress: Callable[[int, int], None] = lambda done, total: None
+
+
+def experiments() -> dict[str, Experiment]:
+    """Return all experiments, by name."""
+    return discover_objects("bench.experiments", Experiment)
+
+
+def experiment(name: str) -> Experiment:
+    """Return an experiment by name.
+
+    Raises
+    ------
+    UnknownNameError
+        If there is none of that name; it lists the valid ones.
+    """
+    found = experiments()
+    return found[require_choice("experiment", name, found)]
+
+
+def inputs_of(chosen: Experiment, options: Any, seed: int) -> dict[str, Any]:
+    """Return what determines the result of a run, as plain data."""
+    return {"experiment": chosen.name, "options": asdict(options), "seed": seed, "strapbench": version("strapbench")}
+
+
+def versions() -> dict[str, str]:
+    """Return the versions of everything that computes."""
+    packages = ("strapbench", "mujoco", "numpy", "scipy", "numba", "rerun-sdk")
+    return {"python": platform.python_version(), **{name: version(name) for name in packages}}
+
+
+def make_options(chosen: Experiment, values: Mapping[str, Any]) -> Any:
+    """Return the experiment's options with some values set.
+
+    Raises
+    ------
+    InputError
+        If an option is unknown; it lists the valid ones.
+    """
+    known = [f.name for f in fields(chosen.options)]
+    for name in values:
+        if name not in known:
+            raise InputError(f"{chosen.name} has no option {name!r}; options: {', '.join(known)}")
+    return chosen.options(**values)
+
+
+def run(
+    name: str,
+    *,
+    seed: int = 0,
+    jobs: int = 1,
+    out: str | Path | None = None,
+    force: bool = False,
+    record: bool = True,
+    scheduler: str | None = None,
+    reporter: Reporter | None = None,
+    **options: Any,
+) -> Outcome:
+    """Run an experiment.
+
+    Parameters
+    ----------
+    name : str
+        As in ``strapbench list``.
+    seed : int
+        The same seed gives the same bits, whatever the number of jobs.
+    jobs : int
+        Worker processes. More than one needs the usual ``if __name__ == "__main__"`` guard in a script.
+    out : path, optional
+        Folder for report, tables, figures and recording; None writes nothing. An interrupted run in that folder
+        is continued, a finished one is not touched without `force`.
+    force : bool
+        Overwrite the run in `out`.
+    record : bool
+        Write the Rerun recording (only with `out`).
+    scheduler : str, optional
+        Address of a Dask scheduler, used instead of worker processes.
+    reporter : Reporter, optional
+        Told what happens.
+    **options
+        Of the experiment.
+
+    Returns
+    -------
+    Outcome
+
+    Raises
+    ------
+    UnknownNameError
+        If there is no such experiment.
+    InputError
+        If an argument or an option breaks a rule.
+    OutputError
+        If `out` cannot be written or holds another run.
+    CampaignError, CampaignInterrupted
+        If the work fails or is interrupted.
+    """
+    from bench.jit import is_compiled
+    from bench.output import RunFolder
+
+    chosen = experiment(name)
+    seed = require_integer("seed", seed, minimum=0)
+    jobs = require_integer("jobs", jobs, minimum=1)
+    settings = make_options(chosen, options)
+    reporter = reporter or Reporter()
+    items = chosen.items(settings, seed)
+    folder = None if out is None else RunFolder.open(Path(out), inputs_of(chosen, settings, seed), force=force)
+    first_run = not is_compiled()
+    if first_run:
+        reporter.say("Compiling the numerical kernels: the first run of this version takes about 10 s longer.")
+    with open_executor(min(jobs, len(items)), scheduler) as executor:
+        rows = run_campaign(
+            chosen.measure,
+            items,
+            executor=executor,
+            folder=None if folder is None else folder.parts,
+            progress=reporter.progress,
+            first_here=first_run,
+        )
+    evaluation = chosen.evaluate(settings, seed, rows)
+    outcome = Outcome(chosen, settings, seed, versions(), rows, evaluation)
+    return outcome if folder is None else folder.write(outcome, record=record, say=reporter.say)
+

@@ -1,0 +1,142 @@
+"""Reports: the published | measured | verdict tables, in Markdown and in self-contained HTML.
+
+A report is a list of blocks; each format renders the same blocks.
+"""
+
+import base64
+import html
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from bench.experiment import Outcome
+from bench.table import Table
+
+
+@dataclass(frozen=True)
+class Heading:
+    """A heading; level 1 is the title."""
+
+    text: str
+    level: int = 2
+
+
+@dataclass(frozen=True)
+class Image:
+    """A picture in the run's folder."""
+
+    path: Path
+    caption: str
+
+
+Block = Heading | Image | Table | str
+
+STYLE = """
+body { font: 16px/1.5 system-ui, sans-serif; max-width: 72rem; margin: 2rem auto; padding: 0 1rem; color: #222; }
+table { border-collapse: collapse; margin: 1rem 0; font-size: 0.86rem; display: block; overflow-x: auto; }
+th, td { border: 1px solid #ccc; padding: 0.3rem 0.6rem; text-align: left; vertical-align: top; }
+th { background: #f2f4f7; } td { font-variant-numeric: tabular-nums; }
+.holds { background: #e2f4e6; } .does-not-hold { background: #fbe3e0; } .cannot-be-judged { background: #fdf3d3; }
+img { max-width: 100%; } figcaption { color: #555; font-size: 0.9rem; } code { background: #f2f4f7; }
+"""
+
+
+def verdict_table(outcome: Outcome) -> Table:
+    """Return published against measured, with verdicts."""
+    return Table.from_rows(
+        ("claim", "where", "published", "measured", "verdict", "reason"),
+        [(v.claim.key, v.claim.place, v.claim.published, v.measured, v.judgement, v.reason) for v in outcome.verdicts],
+        "Published against measured",
+    )
+
+
+def blocks(outcome: Outcome) -> list[Block]:
+    """Return the report, independent of the format."""
+    experiment = outcome.experiment
+    conditions = Table.from_rows(
+        ("condition", "value", "status", "note"),
+        [(c.name, c.value, c.status, c.note) for c in experiment.conditions],
+        "Conditions",
+    )
+    rules = Table.from_rows(("claim", "judged by"), [(c.key, c.judged_by) for c in experiment.claims], "Rules")
+    inputs = {**outcome.inputs()["options"], "seed": outcome.seed}
+    content: list[Block] = [
+        Heading(experiment.title, 1),
+        f"Source: {experiment.source}.",
+        outcome.evaluation.summary,
+        Heading("Published against measured"),
+        verdict_table(outcome),
+        Heading("Figures"),
+    ]
+    for figure in outcome.evaluation.figures:
+        content.append(Image(outcome.files[f"figure {figure.name}"], figure.caption))
+    content.append(Heading("Tables"))
+    for table in outcome.tables.values():
+        content += [Heading(table.title, 3), table]
+    return [
+        *content,
+        Heading("Conditions"),
+        conditions,
+        Heading("How each claim is judged"),
+        rules,
+        Heading("Inputs and versions"),
+        Table.from_rows(("option", "value"), [(k, str(v)) for k, v in inputs.items()], "Inputs"),
+        Table.from_rows(("package", "version"), list(outcome.versions.items()), "Versions"),
+    ]
+
+
+def markdown_report(outcome: Outcome) -> str:
+    """Return the report as Markdown; pictures by relative path."""
+
+    def render(block: Block) -> str:
+        match block:
+            case Heading():
+                return f"{'#' * block.level} {block.text}"
+            case Image():
+                return f"![{block.path.stem}](figures/{block.path.name})\n\n{block.caption}"
+            case Table():
+                return block.markdown()
+            case _:
+                return block
+
+    return "\n\n".join(render(block) for block in blocks(outcome)) + "\n"
+
+
+def html_report(outcome: Outcome) -> str:
+    """Return the report as one HTML page that needs no other file."""
+    body = "\n".join(_html(block) for block in blocks(outcome))
+    title = html.escape(outcome.experiment.title)
+    return (
+        f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{title}</title>'
+        f"<style>{STYLE}</style></head>\n<body>\n{body}\n</body></html>\n"
+    )
+
+
+def _html(block: Block) -> str:
+    match block:
+        case Heading():
+            return f"<h{block.level}>{_inline(block.text)}</h{block.level}>"
+        case Image():
+            data = base64.b64encode(block.path.read_bytes()).decode()
+            picture = f'<img alt="{html.escape(block.path.stem)}" src="data:image/png;base64,{data}">'
+            return f"<figure>{picture}<figcaption>{_inline(block.caption)}</figcaption></figure>"
+        case Table():
+            head = "".join(f"<th>{_inline(name)}</th>" for name in block.columns)
+            rows = "\n".join(f"<tr>{''.join(_cell(text) for text in row)}</tr>" for row in block.cells())
+            return f"<table><thead><tr>{head}</tr></thead><tbody>\n{rows}\n</tbody></table>"
+        case _:
+            return "\n".join(f"<p>{_inline(text)}</p>" for text in block.split("\n\n"))
+
+
+def _cell(text: str) -> str:
+    verdict = text in ("holds", "does not hold", "cannot be judged")
+    mark = f' class="{text.replace(" ", "-")}"' if verdict else ""
+    return f"<td{mark}>{_inline(text)}</td>"
+
+
+def _inline(text: str) -> str:
+    """Escape, and render the little Markdown that captions and summaries use: `code`, **bold**, *emphasis*."""
+    text = html.escape(text)
+    text = re.sub(r"`([^`]+)`", r"<code>\1</code>", text)
+    text = re.sub(r"\*\*([^*]+)\*\*", r"<strong>\1</strong>", text)
+    return re.sub(r"(?<!\*)\*([^*\s][^*]*)\*(?!\*)", r"<em>\1</em>", text)
