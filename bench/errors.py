@@ -42,7 +42,7 @@ class ObservabilityError(BenchError):
 
 
 class OutputError(BenchError):
-    """A result cannot be written, or would overwrite another."""
+    """A result could not be written; what was written before is kept."""
 
 
 def require_array(name: str, value: ArrayLike, shape: tuple[int | None, ...]) -> Array:

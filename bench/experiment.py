@@ -67,7 +67,6 @@ class Claim:
 class Verdict:
     """What became of a claim: the measured value and one sentence of reason."""
 
-    claim: Claim
     judgement: Judgement
     measured: str
     reason: str
@@ -79,18 +78,18 @@ class Evaluation:
 
     Attributes
     ----------
-    verdicts : sequence of Verdict
-        One for each claim.
+    verdicts : dict of str to Verdict
+        By the key of the claim; one for each.
     tables : dict of str to Table
         For the report, by file name.
     figures : sequence of Figure
     summary : str
         One paragraph of Markdown: what was found.
     focus : Any
-        What the recording shows (a work item, a trial), passed to `Experiment.record`.
+        What the recording shows (a trial, say); the experiment's own business.
     """
 
-    verdicts: Sequence[Verdict]
+    verdicts: Mapping[str, Verdict]
     tables: Mapping[str, Table]
     figures: Sequence[Figure]
     summary: str
@@ -116,7 +115,7 @@ class Experiment:
     evaluate : callable
         (options, seed, rows) -> Evaluation.
     record : callable, optional
-        (options, seed, evaluation, path) -> None: writes the recording.
+        (outcome, path) -> None: writes the recording.
     """
 
     name: str
@@ -128,7 +127,7 @@ class Experiment:
     items: Callable[[Any, int], list[Item]]
     measure: Callable[[Any], Table]
     evaluate: Callable[[Any, int, Table], Evaluation]
-    record: Callable[[Any, int, Evaluation, Path], None] | None = None
+    record: "Callable[[Outcome, Path], None] | None" = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,9 +160,9 @@ class Outcome:
     files: dict[str, Path] = field(default_factory=dict)
 
     @property
-    def verdicts(self) -> Sequence[Verdict]:
-        """One verdict for each claim."""
-        return self.evaluation.verdicts
+    def verdicts(self) -> list[tuple[Claim, Verdict]]:
+        """Every claim with its verdict."""
+        return [(claim, self.evaluation.verdicts[claim.key]) for claim in self.experiment.claims]
 
     @property
     def tables(self) -> Mapping[str, Table]:
@@ -271,9 +270,9 @@ def run(
     UnknownNameError
         If there is no such experiment.
     InputError
-        If an argument or an option breaks a rule.
+        If an argument or an option breaks a rule, or `out` cannot be written or holds another run.
     OutputError
-        If `out` cannot be written or holds another run.
+        If a result cannot be written at the end; the finished parts are kept.
     CampaignError, CampaignInterrupted
         If the work fails or is interrupted.
     """

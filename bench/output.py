@@ -13,7 +13,7 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from bench.errors import OutputError
+from bench.errors import InputError, OutputError
 from bench.experiment import Outcome
 from bench.table import replacing
 
@@ -32,7 +32,7 @@ class RunFolder:
 
         Raises
         ------
-        OutputError
+        InputError
             If it cannot be written, holds something that is not a run, or holds a finished run or an interrupted
             one with other inputs and `force` is not set.
         """
@@ -45,7 +45,7 @@ class RunFolder:
                 folder._clear()
             _write_json(path / "inputs.json", inputs)
         except OSError as error:
-            raise OutputError(f"out {str(path)!r} cannot be written: {error.strerror or error}") from error
+            raise InputError(f"out {str(path)!r} cannot be written: {error.strerror or error}") from error
         return folder
 
     @property
@@ -59,14 +59,14 @@ class RunFolder:
             return
         foreign = [name for name in found if name not in MADE_HERE and not name.endswith(".part")]
         if foreign or "inputs.json" not in found:
-            raise OutputError(f"{where} is not empty and not a run of strapbench (it holds {found[0]!r}): choose another")
+            raise InputError(f"{where} is not empty and not a run of strapbench (it holds {found[0]!r}): choose another")
         if force:
             return
         if "result.json" in found:
-            raise OutputError(f"{where} holds a finished run: choose another folder, or --force to overwrite it")
+            raise InputError(f"{where} holds a finished run: choose another folder, or --force to overwrite it")
         started = json.loads((self.path / "inputs.json").read_text())
         if started != inputs:
-            raise OutputError(
+            raise InputError(
                 f"{where} holds an interrupted run with other inputs ({_difference(started, inputs)}): "
                 "choose another folder, or --force to overwrite it"
             )
@@ -111,7 +111,7 @@ class RunFolder:
         if record and outcome.experiment.record is not None:
             say("Writing the recording ...")
             files["recording"] = self.path / "recording.rrd"
-            outcome.experiment.record(outcome.options, outcome.seed, outcome.evaluation, files["recording"])
+            outcome.experiment.record(outcome, files["recording"])
         outcome = replace(outcome, folder=self.path, files=files)
         for kind, text in (("report.md", markdown_report(outcome)), ("report.html", html_report(outcome))):
             files[kind] = self.path / kind
@@ -142,8 +142,7 @@ def _result(outcome: Outcome) -> dict[str, Any]:
         "conditions": [asdict(condition) for condition in experiment.conditions],
         "summary": outcome.evaluation.summary,
         "verdicts": [
-            {**asdict(v.claim), "judgement": v.judgement, "measured": v.measured, "reason": v.reason}
-            for v in outcome.verdicts
+            {**asdict(claim), **asdict(verdict)} for claim, verdict in outcome.verdicts
         ],
     }
 

@@ -45,19 +45,23 @@ def verdict_table(outcome: Outcome) -> Table:
     """Return published against measured, with verdicts."""
     return Table.from_rows(
         ("claim", "where", "published", "measured", "verdict", "reason"),
-        [(v.claim.key, v.claim.place, v.claim.published, v.measured, v.judgement, v.reason) for v in outcome.verdicts],
+        [(c.key, c.place, c.published, v.measured, v.judgement, v.reason) for c, v in outcome.verdicts],
         "Published against measured",
+    )
+
+
+def condition_table(outcome: Outcome) -> Table:
+    """Return the conditions, stated and assumed."""
+    return Table.from_rows(
+        ("condition", "value", "status", "note"),
+        [(c.name, c.value, c.status, c.note) for c in outcome.experiment.conditions],
+        "Conditions",
     )
 
 
 def blocks(outcome: Outcome) -> list[Block]:
     """Return the report, independent of the format."""
     experiment = outcome.experiment
-    conditions = Table.from_rows(
-        ("condition", "value", "status", "note"),
-        [(c.name, c.value, c.status, c.note) for c in experiment.conditions],
-        "Conditions",
-    )
     rules = Table.from_rows(("claim", "judged by"), [(c.key, c.judged_by) for c in experiment.claims], "Rules")
     inputs = {**outcome.inputs()["options"], "seed": outcome.seed}
     content: list[Block] = [
@@ -76,7 +80,7 @@ def blocks(outcome: Outcome) -> list[Block]:
     return [
         *content,
         Heading("Conditions"),
-        conditions,
+        condition_table(outcome),
         Heading("How each claim is judged"),
         rules,
         Heading("Inputs and versions"),

@@ -13,6 +13,7 @@ from typing import ClassVar
 import numpy as np
 
 from bench.errors import Array
+from bench.registry import discover
 from bench.signals import Initial, Kinematics
 from bench.units import STANDARD_GRAVITY
 
@@ -34,3 +35,8 @@ class Motion(ABC):
     def initial(self, t0: float = 0.0) -> Initial:
         """Return the true state at t0, as solvers are told it."""
         return Initial.of(self.kinematics(np.array([float(t0)])))
+
+
+def motions() -> dict[str, type[Motion]]:
+    """Return the motion classes that come with the package, by name."""
+    return discover("bench.motion", Motion)  # type: ignore[type-abstract]

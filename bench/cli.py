@@ -1,0 +1,187 @@
+"""The command line: list, run, view. Options, defaults and help come from the dataclasses.
+
+Exit codes: 0 done, 2 bad input, 1 failed.
+"""
+
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass, field, make_dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import tyro
+
+from bench.errors import BenchError, InputError
+
+if TYPE_CHECKING:
+    from bench.experiment import Experiment, Outcome
+
+
+@dataclass(frozen=True)
+class ListCommand:
+    """List experiments, motions, rigs and solvers, one line each."""
+
+    def __call__(self) -> None:
+        """Print the lists."""
+        for title, entries in _catalogue().items():
+            print(f"{title}:")
+            width = max(len(name) for name in entries)
+            for name, line in entries.items():
+                print(f"  {name:{width}}  {line}")
+
+
+@dataclass(frozen=True)
+class ViewCommand:
+    """Open a recording in the native viewer, or make a picture of it where there is no display."""
+
+    file: Annotated[Path, tyro.conf.Positional]
+    """Recording (.rrd)."""
+    screenshot: Path | None = None
+    """Write a PNG instead of opening a window; works without a display."""
+    at: float | None = None
+    """Time of the picture, s."""
+    tab: str | None = None
+    """Tab of the picture, by its title."""
+
+    def __call__(self) -> None:
+        """Open the recording or write the picture."""
+        from bench import viewer
+
+        if self.screenshot is None:
+            viewer.open_recording(self.file)
+        else:
+            print(f"Picture: {viewer.screenshot(self.file, self.screenshot, at=self.at, tab=self.tab)}")
+
+
+@dataclass(frozen=True)
+class RunOptions:
+    """What every run has in common."""
+
+    out: Path
+    """Folder for the report, tables, figures and recording; must be new, empty, or an interrupted run."""
+    seed: int = 0
+    """The same seed gives the same bits, whatever the number of jobs."""
+    jobs: int | None = None
+    """Worker processes; the default is the number of CPUs."""
+    record: bool = True
+    """Write the Rerun recording."""
+    force: bool = False
+    """Overwrite the run that is in the folder."""
+    scheduler: str | None = None
+    """Address of a Dask scheduler to work on, instead of worker processes."""
+
+
+def _run(experiment: "Experiment", options: Any, common: RunOptions) -> None:
+    from bench.campaign import cpu_count
+    from bench.experiment import run
+    from bench.progress import reporting
+
+    with reporting(experiment.title) as reporter:
+        outcome = run(
+            experiment.name,
+            seed=common.seed,
+            jobs=cpu_count() if common.jobs is None else common.jobs,
+            out=common.out,
+            force=common.force,
+            record=common.record,
+            scheduler=common.scheduler,
+            reporter=reporter,
+            **asdict(options),
+        )
+    _print_outcome(outcome)
+
+
+def _print_outcome(outcome: "Outcome") -> None:
+    from bench.progress import print_verdicts
+
+    print_verdicts(outcome)
+    for kind, path in outcome.files.items():
+        print(f"{kind + ':':42} {path}")
+
+
+def _catalogue() -> dict[str, dict[str, str]]:
+    from bench.experiment import experiments
+    from bench.mjcf import model_names, model_summary
+    from bench.motion import motions
+    from bench.registry import first_line
+    from bench.solvers import KINDS, solvers
+
+    return {
+        "experiments": {name: experiment.title for name, experiment in experiments().items()},
+        "motions": {name: first_line(motion) for name, motion in motions().items()},
+        "rigs": {name: model_summary(name) for name in model_names()},
+        **{f"{kind} solvers": {name: first_line(cls) for name, cls in solvers(kind).items()} for kind in KINDS},
+    }
+
+
+def _run_commands() -> Any:
+    """Return one subcommand for each experiment, with its own options beside the common ones."""
+    from bench.experiment import experiments
+
+    commands: Any = None
+    for name, experiment in experiments().items():
+        flat = tyro.conf.OmitArgPrefixes
+        command = make_dataclass(
+            name,
+            [
+                ("common", Annotated[RunOptions, tyro.conf.arg(name="")]),
+                ("options", Annotated[experiment.options, tyro.conf.arg(name="")], field(default=experiment.options())),
+            ],
+            frozen=True,
+        )
+        command.__doc__ = f"{experiment.title}.\n\n{experiment.source}."
+        command.__call__ = lambda self, experiment=experiment: _run(experiment, self.options, self.common)  # type: ignore[attr-defined]
+        annotated = Annotated[flat[command], tyro.conf.subcommand(name, prefix_name=False)]  # type: ignore[valid-type]
+        commands = annotated if commands is None else commands | annotated
+    return commands
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line and return the exit code."""
+    arguments = list(sys.argv[1:] if arguments is None else arguments)
+    try:
+        command = _parse(arguments)
+        command()
+    except InputError as error:
+        return _fail(error, 2)
+    except BenchError as error:
+        return _fail(error, 1)
+    except KeyboardInterrupt:
+        return _fail("interrupted", 1)
+    except BrokenPipeError:  # the reader of our output has gone: nothing is wrong
+        sys.stderr.close()
+    return 0
+
+
+def _parse(arguments: list[str]) -> Callable[[], None]:
+    @dataclass(frozen=True)
+    class RunCommand:
+        """Run an experiment and write its report, tables, figures and recording."""
+
+        experiment: Any
+
+        def __call__(self) -> None:
+            self.experiment()
+
+    # Only `run` needs the experiments: the general help stays quick.
+    RunCommand.__annotations__["experiment"] = _run_commands() if arguments[:1] == ["run"] else str
+    commands = (
+        Annotated[ListCommand, tyro.conf.subcommand("list")]
+        | Annotated[RunCommand, tyro.conf.subcommand("run", prefix_name=False)]
+        | Annotated[ViewCommand, tyro.conf.subcommand("view", prefix_name=False)]
+    )
+    return tyro.cli(
+        commands,
+        prog="strapbench",
+        description="Tells the truth about strapdown navigation algorithms.",
+        args=arguments,
+    )
+
+
+def _fail(error: object, code: int) -> int:
+    print(f"strapbench: {error}", file=sys.stderr)
+    return code
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,1 @@
+"""Experiments: one file per table or figure of a paper, found by discovery."""

@@ -1,0 +1,349 @@
+"""The verdicts of `gyro-free-circular`: where each printed number lies in each reading, and what becomes of the claims."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from bench.bounds import cramer_rao_std
+from bench.errors import Array
+from bench.evaluation import percentile_of, rms
+from bench.experiment import Evaluation, Verdict
+from bench.experiments import _gyro_free_figures as figures
+from bench.experiments._gyro_free_trials import BIAS, NOISE, READINGS, Options, Reading, ideal
+from bench.table import Table
+
+AXES = "xyz"
+DEFINITIONS = {"integral": "integral of the rate error", "rotation": "rotation vector in n"}
+CENTRAL = (2.5, 97.5)  # percentiles that a single published run is expected between
+
+
+@dataclass(frozen=True)
+class Published:
+    """One printed number of tables 1 and 2, at 60 s."""
+
+    table: int
+    system: str
+    axis: int
+    value: float
+
+    @property
+    def quantity(self) -> str:
+        """Return what it measures."""
+        return "attitude" if self.table == 1 else "position"
+
+    @property
+    def unit(self) -> str:
+        """Return its unit."""
+        return "deg" if self.table == 1 else "m"
+
+    @property
+    def key(self) -> str:
+        """Return the name of its claim."""
+        return f"{self.system}, {self.quantity} {AXES[self.axis]}"
+
+    @property
+    def place(self) -> str:
+        """Return where it is printed."""
+        return f"table {self.table}"
+
+    def columns(self) -> dict[str, str]:
+        """Return the columns of the rows that it may mean, by definition."""
+        if self.table == 2:
+            return {"": f"position_{AXES[self.axis]}_m"}
+        return {name: f"{name}_{AXES[self.axis]}_deg" for name in DEFINITIONS}
+
+
+PUBLISHED = tuple(
+    Published(table, system, axis, value)
+    for table, system, values in (
+        (1, "six", (-0.534, -2.584, -1.875)),
+        (1, "nine", (0.017, -0.077, 0.062)),
+        (2, "six", (-103.201, 104.337)),
+        (2, "nine", (10.372, 12.683)),
+    )
+    for axis, value in enumerate(values)
+)
+IMPROVEMENTS = {"attitude": (96.82, 97.02, 96.69), "position": (89.95, 87.84)}  # %, printed
+
+
+@dataclass(frozen=True)
+class Focus:
+    """What figures and recording show: the trial that is nearest to the printed numbers."""
+
+    reading: Reading
+    definition: str
+    trial: int
+
+
+@dataclass(frozen=True, eq=False)
+class Trials:
+    """The rows, cut by reading and system."""
+
+    options: Options
+    rows: dict[tuple[str, str], Table]
+
+    @classmethod
+    def of(cls, options: Options, rows: Table) -> "Trials":
+        """Cut the rows once; selecting them again and again would be slow."""
+        cut = {(r.label, s): rows.where(reading=r.label, system=s) for r in READINGS for s in ("six", "nine")}
+        return cls(options, cut)
+
+    def at(self, reading: Reading, system: str, columns: Iterable[str], t: float) -> Array:
+        """Return the errors of all trials at one time, shape (trials, columns)."""
+        table = self.rows[reading.label, system]
+        times = table["t_s"]
+        keep = times == times[np.argmin(np.abs(times - t))]
+        return np.stack([table[name][keep] for name in columns], axis=1)
+
+    def end(self, reading: Reading, system: str, columns: Iterable[str]) -> Array:
+        """Return the errors of all trials at the end."""
+        return self.at(reading, system, columns, self.options.duration)
+
+
+POSITION = ("position_x_m", "position_y_m")
+ATTITUDE = tuple(f"integral_{axis}_deg" for axis in AXES)
+
+
+def evaluate(options: Options, seed: int, rows: Table) -> Evaluation:
+    """Turn the rows into tables, verdicts and figures."""
+    trials = Trials.of(options, rows)
+    placed = place_published(trials)
+    reading, definition = best_reading(placed)
+    verdicts = {
+        **{number.key: judge_number(number, placed) for number in PUBLISHED},
+        "improvement arithmetic": judge_arithmetic(),
+        "attitude better by 95 %": judge_everywhere(trials, lambda r: improvement(trials, r, ATTITUDE), 0.95),
+        "position better by 85 %": judge_everywhere(trials, lambda r: improvement(trials, r, POSITION), 0.85),
+        "advantage grows with time": judge_everywhere(trials, lambda r: growth_of_advantage(trials, r), 1.0),
+        "less smooth": judge_everywhere(trials, lambda r: rougher(trials, r), 0.95),
+        "both diverge": judge_everywhere(trials, lambda r: divergence(trials, r), 1.0),
+        "differences remove bias": judge_bias_removal(),
+        "no division by zero": judge_zero_rate(seed),
+    }
+    trial = nearest_trial(trials, reading, definition)
+    text = summary(verdicts, reading, definition, placed)
+    focus = Focus(reading, definition, trial)
+    tables = {
+        "published_in_readings": placed,
+        "readings": reading_table(trials, placed),
+        "tables_1_and_2": rebuilt_tables(trials, reading, definition),
+        "bound": bound_table(trials),
+    }
+    drawn = figures.figures(options, seed, trials, focus, placed)
+    return Evaluation(verdicts, tables, drawn, text, focus)
+
+
+def place_published(trials: Trials) -> Table:
+    """Return where each printed number lies in each reading and under each definition."""
+    found = []
+    for number, reading in product(PUBLISHED, READINGS):
+        for definition, column in number.columns().items():
+            sample = trials.end(reading, number.system, [column])[:, 0]
+            low, middle, high = np.percentile(sample, [CENTRAL[0], 50.0, CENTRAL[1]])
+            percentile = 100 * percentile_of(number.value, sample)
+            inside = bool(low <= number.value <= high)
+            found.append(
+                (number.key, number.unit, number.value, reading.label, definition)
+                + (low, middle, high, percentile, inside)
+            )
+    names = ("number", "unit", "published", "reading", "definition", "p2.5", "median", "p97.5", "percentile", "inside")
+    return Table.from_rows(names, found, "Each printed number in each reading of the conditions, at the end of the run")
+
+
+def _counted(placed: Table, reading: Reading, definition: str) -> tuple[int, float]:
+    """Return how many printed numbers a reading admits, and how central they are (log of two-sided tails)."""
+    keep = (placed["reading"] == reading.label) & np.isin(placed["definition"], ("", definition))
+    tail = np.minimum(placed["percentile"], 100 - placed["percentile"])[keep] / 50
+    return int(placed["inside"][keep].sum()), float(np.log(np.maximum(tail, 1e-4)).sum())
+
+
+def best_reading(placed: Table) -> tuple[Reading, str]:
+    """Return the reading and the definition that admit most of the printed numbers."""
+    return max(product(READINGS, DEFINITIONS), key=lambda choice: _counted(placed, *choice))
+
+
+def judge_number(number: Published, placed: Table) -> Verdict:
+    """Return judgement, measured value and reason of one printed number."""
+    rows = placed.where(number=number.key)
+    admitted = [k for k in range(len(rows)) if rows["inside"][k]]
+    tail = np.abs(rows["percentile"] - 50)
+    k = int(np.argmin(tail))
+    measured = f"{rows['p2.5'][k]:.3g} to {rows['p97.5'][k]:.3g} {number.unit}, median {rows['median'][k]:.2g}"
+    where = f"{rows['reading'][k]}" + (f", {DEFINITIONS[rows['definition'][k]]}" if rows["definition"][k] else "")
+    reason = (
+        f"at percentile {rows['percentile'][k]:.3g} of the nearest reading ({where}); "
+        f"admitted by {len(admitted)} of {len(rows)} readings"
+    )
+    excluded = sorted({str(r) for r in rows["reading"]} - {str(rows["reading"][j]) for j in admitted})
+    if admitted and excluded:
+        reason += "; excludes " + " / ".join(excluded)
+    return Verdict("holds" if admitted else "does not hold", measured, reason)
+
+
+def judge_arithmetic() -> Verdict:
+    """Recompute the printed improvements from the printed errors."""
+    value = {(n.system, n.quantity, n.axis): n.value for n in PUBLISHED}
+    got = [
+        100 * (1 - abs(value["nine", quantity, axis] / value["six", quantity, axis]))
+        for quantity, printed in IMPROVEMENTS.items()
+        for axis in range(len(printed))
+    ]
+    printed = [number for numbers in IMPROVEMENTS.values() for number in numbers]
+    same = all(round(a, 2) == b for a, b in zip(got, printed, strict=True))
+    measured = ", ".join(f"{a:.2f}" for a in got) + " %"
+    return Verdict("holds" if same else "does not hold", measured, "recomputed from the printed errors of one run")
+
+
+def judge_everywhere(
+    trials: Trials, measure: Callable[[Reading], float], threshold: float
+) -> Verdict:
+    """Judge a statement in every reading: it is true where the measure exceeds the threshold."""
+    values = {reading: measure(reading) for reading in READINGS}
+    true = [reading for reading, value in values.items() if value > threshold]
+    span = f"{min(values.values()):.4g} to {max(values.values()):.4g}"
+    measured = f"{span} (needs > {threshold:g})"
+    if len(true) == len(READINGS):
+        return Verdict("holds", measured, f"true in all {len(READINGS)} readings, over {trials.options.trials} trials each")
+    if not true:
+        return Verdict("does not hold", measured, f"true in none of {len(READINGS)} readings")
+    false = [reading.label for reading in READINGS if reading not in true]
+    reason = f"true in {len(true)} of {len(READINGS)} readings; not in: {' / '.join(false)}"
+    return Verdict("cannot be judged", measured, reason)
+
+
+def improvement(trials: Trials, reading: Reading, columns: tuple[str, ...]) -> float:
+    """Return the smallest over the axes of 1 - rms(nine)/rms(six) at the end."""
+    nine, six = (rms(trials.end(reading, system, columns), axis=0) for system in ("nine", "six"))
+    return float((1 - nine / six).min())
+
+
+def growth_of_advantage(trials: Trials, reading: Reading) -> float:
+    """Return the smallest growth of rms(six)/rms(nine) from one and two thirds of the run to its end."""
+    duration = trials.options.duration
+    growth = []
+    for columns in (ATTITUDE, POSITION):
+        ratio = [
+            rms(trials.at(reading, "six", columns, t)) / rms(trials.at(reading, "nine", columns, t))
+            for t in (duration / 3, 2 * duration / 3, duration)
+        ]
+        growth += [ratio[2] / ratio[0], ratio[2] / ratio[1]]
+    return float(min(growth))
+
+
+def rougher(trials: Trials, reading: Reading) -> float:
+    """Return the fraction of trials in which nine is rougher than six."""
+    nine, six = (trials.end(reading, system, ["roughness_deg"]) for system in ("nine", "six"))
+    return float(np.mean(nine > six))
+
+
+def divergence(trials: Trials, reading: Reading) -> float:
+    """Return the smallest growth of an rms error from half time to the end."""
+    half, end = trials.options.duration / 2, trials.options.duration
+    return float(
+        min(
+            rms(trials.at(reading, system, columns, end)) / rms(trials.at(reading, system, columns, half))
+            for system in ("nine", "six")
+            for columns in (ATTITUDE, POSITION)
+        )
+    )
+
+
+def _nine_at_rest(readings: Array) -> tuple[Array, int]:
+    """Return f_b and the number of negative squares of the nine-accelerometer solver for given readings at rest."""
+    from bench.signals import Initial
+    from bench.solvers import solver
+
+    geometry = ideal(Options(), "no gravity").accelerometers["nine"]
+    solution = solver("gyro-free", "nine-accelerometer").solve(geometry, readings, 0.01, Initial(gravity=(0, 0, 0)))
+    return solution.f_b, solution.negative_squares
+
+
+def judge_bias_removal() -> Verdict:
+    """Give the solver every combination of bias signs at rest and look at its specific force."""
+    signs = np.array(list(product((-1.0, 1.0), repeat=9)))
+    error = np.abs(_nine_at_rest(BIAS * signs)[0]).max(axis=1)
+    free = int((error < 1e-9 * BIAS).sum())
+    reason = (
+        f"f = (A1 - A4)/2 is free of bias only where opposite accelerometers have equal biases: "
+        f"{free} of {len(signs)} combinations of signs"
+    )
+    return ("holds" if free == len(signs) else "does not hold"), f"up to {error.max():.2g} m/s^2 of {BIAS:g}", reason
+
+
+def judge_zero_rate(seed: int) -> Verdict:
+    """Give the solver noise at rest: nothing may divide by the rate, but half of the squares are negative."""
+    noise = NOISE**0.5 * np.random.default_rng(seed).standard_normal((20_000, 9))
+    f_b, negative = _nine_at_rest(noise)
+    linear = np.allclose(_nine_at_rest(2 * noise)[0], 2 * f_b, rtol=1e-12, atol=0)
+    share = negative / (3 * len(noise))
+    holds = bool(np.isfinite(f_b).all() and linear)
+    reason = "the solution stays finite and linear, but the squares that fall below zero carry no rate"
+    return Verdict("holds" if holds else "does not hold", f"finite; {100 * share:.0f} % of the squares negative", reason)
+
+
+def nearest_trial(trials: Trials, reading: Reading, definition: str) -> int:
+    """Return the trial whose errors are nearest to the printed ones, each in units of its own spread."""
+    distance = np.zeros(trials.options.trials)
+    for number in PUBLISHED:
+        column = number.columns().get(definition) or number.columns()[""]
+        sample = trials.end(reading, number.system, [column])[:, 0]
+        distance += ((sample - number.value) / max(sample.std(), 1e-300)) ** 2
+    return int(np.argmin(distance))
+
+
+def reading_table(trials: Trials, placed: Table) -> Table:
+    """Return one row per reading: how many printed numbers it admits, and how large the errors are."""
+    rows = []
+    for reading in READINGS:
+        admitted = [f"{_counted(placed, reading, d)[0]} of {len(PUBLISHED)}" for d in DEFINITIONS]
+        size = [rms(trials.end(reading, s, c)) for c in (ATTITUDE, POSITION) for s in ("six", "nine")]
+        gain = [100 * improvement(trials, reading, columns) for columns in (ATTITUDE, POSITION)]
+        rows.append((reading.label, *admitted, *size, *gain))
+    names = (
+        *("reading", "admitted (integral)", "admitted (rotation vector)", "six, deg rms", "nine, deg rms"),
+        *("six, m rms", "nine, m rms", "attitude better by, %", "position better by, %"),
+    )
+    return Table.from_rows(names, rows, "The readings of the conditions")
+
+
+def rebuilt_tables(trials: Trials, reading: Reading, definition: str) -> Table:
+    """Return tables 1 and 2 as distributions, in the reading that fits best."""
+    rows = []
+    for number in PUBLISHED:
+        column = number.columns().get(definition) or number.columns()[""]
+        sample = trials.end(reading, number.system, [column])[:, 0]
+        rows.append(
+            (number.place, number.system, number.quantity, AXES[number.axis], number.unit, number.value)
+            + (sample.mean(), sample.std(), *np.percentile(sample, [2.5, 50, 97.5]))
+        )
+    names = ("table", "system", "error", "axis", "unit", "published", "mean", "std", "p2.5", "p50", "p97.5")
+    return Table.from_rows(names, rows, f"Tables 1 and 2 in the reading that fits best ({reading.label}; {definition})")
+
+
+def bound_table(trials: Trials) -> Table:
+    """Return the jitter of the rate against the Cramer-Rao bound of one sample."""
+    options, rows = trials.options, []
+    for reading in READINGS:
+        geometry = ideal(options, reading.gravity).accelerometers["nine"]
+        bound = rms(cramer_rao_std(geometry, np.array([2.0, 2.0, 2.0]), reading.noise_std(options.rate)))
+        jitter = rms(trials.end(reading, "nine", ["rate_jitter_rad_per_s"]))
+        rows.append((reading.label, bound, jitter, jitter / bound))
+    return Table.from_rows(
+        ("reading", "Cramer-Rao bound, rad/s", "nine accelerometers, rad/s", "ratio"),
+        rows,
+        "Noise of the nine-accelerometer rate per sample against what any single-sample estimator can reach",
+    )
+
+
+def summary(verdicts: dict[str, Verdict], reading: Reading, definition: str, placed: Table) -> str:
+    """Return the finding in one paragraph."""
+    count = {j: sum(v.judgement == j for v in verdicts.values()) for j in ("holds", "does not hold", "cannot be judged")}
+    admitted, _ = _counted(placed, reading, definition)
+    return (
+        f"Of {len(verdicts)} claims {count['holds']} hold, {count['does not hold']} do not hold and "
+        f"{count['cannot be judged']} cannot be judged. The reading of the conditions that fits the printed tables best "
+        f"is **{reading.label}** with the attitude error as {DEFINITIONS[definition]}: it admits {admitted} of "
+        f"{len(PUBLISHED)} printed numbers within its central 95 %."
+    )

@@ -1,0 +1,45 @@
+"""What a run shows in the terminal: a progress bar, lines that say what happens, the table of verdicts."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.table import Table as RichTable
+
+from bench.experiment import Outcome, Reporter
+
+COLOURS = {"holds": "green", "does not hold": "red", "cannot be judged": "yellow"}
+
+
+@contextmanager
+def reporting(title: str) -> Iterator[Reporter]:
+    """Show a progress bar while the block runs; without a terminal, only the lines."""
+    console = Console(stderr=True)
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=console) as progress:
+        task = progress.add_task("trials", total=None)
+        console.print(title)
+        yield Reporter(
+            say=lambda text: progress.console.print(text),
+            progress=lambda done, total: progress.update(task, completed=done, total=total),
+        )
+
+
+def print_verdicts(outcome: Outcome) -> None:
+    """Print published against measured, with verdicts."""
+    console = Console()
+    table = RichTable(title=f"{outcome.experiment.title}: published against measured", show_lines=True)
+    for heading in ("claim", "published", "measured", "verdict"):
+        table.add_column(heading, no_wrap=heading == "verdict")
+    for claim, verdict in outcome.verdicts:
+        colour = COLOURS[verdict.judgement]
+        table.add_row(claim.key, claim.published, verdict.measured, f"[{colour}]{verdict.judgement}[/{colour}]")
+    console.print(table)
+    console.print(outcome.evaluation.summary.replace("**", ""), markup=False, highlight=False)
