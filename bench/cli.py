@@ -54,6 +54,14 @@ class ViewCommand:
 
 
 @dataclass(frozen=True)
+class RunCommand:
+    """Run an experiment and write its report, tables, figures and recording."""
+
+    experiment: Annotated[str, tyro.conf.Positional]
+    """Name of the experiment, see `strapbench list`; `strapbench run NAME --help` shows its options."""
+
+
+@dataclass(frozen=True)
 class RunOptions:
     """What every run has in common."""
 
@@ -114,28 +122,6 @@ def _catalogue() -> dict[str, dict[str, str]]:
     }
 
 
-def _run_commands() -> Any:
-    """Return one subcommand for each experiment, with its own options beside the common ones."""
-    from bench.experiment import experiments
-
-    commands: Any = None
-    for name, experiment in experiments().items():
-        flat = tyro.conf.OmitArgPrefixes
-        command = make_dataclass(
-            name,
-            [
-                ("common", Annotated[RunOptions, tyro.conf.arg(name="")]),
-                ("options", Annotated[experiment.options, tyro.conf.arg(name="")], field(default=experiment.options())),
-            ],
-            frozen=True,
-        )
-        command.__doc__ = f"{experiment.title}.\n\n{experiment.source}."
-        command.__call__ = lambda self, experiment=experiment: _run(experiment, self.options, self.common)  # type: ignore[attr-defined]
-        annotated = Annotated[flat[command], tyro.conf.subcommand(name, prefix_name=False)]  # type: ignore[valid-type]
-        commands = annotated if commands is None else commands | annotated
-    return commands
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return the exit code."""
     arguments = list(sys.argv[1:] if arguments is None else arguments)
@@ -154,21 +140,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _parse(arguments: list[str]) -> Callable[[], None]:
-    @dataclass(frozen=True)
-    class RunCommand:
-        """Run an experiment and write its report, tables, figures and recording."""
-
-        experiment: Any
-
-        def __call__(self) -> None:
-            self.experiment()
-
-    # Only `run` needs the experiments: the general help stays quick.
-    RunCommand.__annotations__["experiment"] = _run_commands() if arguments[:1] == ["run"] else str
+    if arguments[:1] == ["run"] and len(arguments) > 1 and arguments[1] not in ("-h", "--help"):
+        return _parse_run(arguments[1:])
     commands = (
         Annotated[ListCommand, tyro.conf.subcommand("list")]
-        | Annotated[RunCommand, tyro.conf.subcommand("run", prefix_name=False)]
-        | Annotated[ViewCommand, tyro.conf.subcommand("view", prefix_name=False)]
+        | Annotated[RunCommand, tyro.conf.subcommand("run")]
+        | Annotated[ViewCommand, tyro.conf.subcommand("view")]
     )
     return tyro.cli(
         commands,
@@ -176,6 +153,27 @@ def _parse(arguments: list[str]) -> Callable[[], None]:
         description="Tells the truth about strapdown navigation algorithms.",
         args=arguments,
     )
+
+
+def _parse_run(arguments: list[str]) -> Callable[[], None]:
+    """Parse the name of an experiment, wherever it stands, and the options that belong to it."""
+    from bench.experiment import experiment, experiments
+
+    known = experiments()
+    name = next((word for word in arguments if word in known), arguments[0])
+    chosen = experiment(name)
+    flat = tyro.conf.OmitArgPrefixes
+    options = Annotated[chosen.options, tyro.conf.arg(name="")]
+    command = make_dataclass(
+        "Run",
+        [("common", Annotated[RunOptions, tyro.conf.arg(name="")]), ("options", options, field(default=chosen.options()))],
+        frozen=True,
+    )
+    arguments = [word for word in arguments if word != name]
+    parsed = tyro.cli(
+        flat[command], prog=f"strapbench run {name}", description=f"{chosen.title}. {chosen.source}.", args=arguments
+    )
+    return lambda: _run(chosen, parsed.options, parsed.common)
 
 
 def _fail(error: object, code: int) -> int:

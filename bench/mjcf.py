@@ -33,11 +33,11 @@ def model_names() -> list[str]:
 
 
 def model_summary(name: str) -> str:
-    """Return the first line of the first comment of a model that comes with the package."""
+    """Return the first sentence of the first comment of a model that comes with the package."""
     parser = ElementTree.XMLParser(target=ElementTree.TreeBuilder(insert_comments=True))
     root = ElementTree.parse(models_dir() / f"{name}.xml", parser).getroot()
     comment = next(node.text for node in root.iter() if node.tag is ElementTree.Comment)
-    return (comment or "").strip().splitlines()[0].strip().rstrip(".")
+    return " ".join((comment or "").split()).split(". ")[0].rstrip(".")
 
 
 def compile_model(model: "str | Path | mujoco.MjSpec") -> mujoco.MjModel:

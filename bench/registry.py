@@ -64,7 +64,8 @@ def discover_objects(package: str, kind: type[T]) -> dict[str, T]:
     return found
 
 
-def first_line(item: object) -> str:
-    """Return the first line of an object's docstring, without the leading name."""
-    line = (inspect.getdoc(item) or "").splitlines()[0]
-    return line.rstrip(".")
+def first_line(item: type) -> str:
+    """Return the first line of a registered class's docstring, without its name if the line starts with it."""
+    line = (inspect.getdoc(item) or "").splitlines()[0].rstrip(".")
+    head, colon, tail = line.partition(": ")
+    return tail if colon and head.lower().replace(" ", "-") == vars(item)["name"] else line

@@ -131,8 +131,8 @@ def quat_from_matrix(C: ArrayLike) -> Array:
 
 def quat_from_euler(psi: ArrayLike, P: ArrayLike, R: ArrayLike) -> Array:
     """Return q_nb of yaw psi, pitch P, roll R, rad, shape (..., 4): qz(psi) o qx(P) o qy(R)."""
-    halves = np.broadcast_arrays(*(0.5 * np.asarray(angle, dtype=float) for angle in (psi, P, R)))
-    (cz, cx, cy), (sz, sx, sy) = (np.cos(halves), np.sin(halves))
+    halves = [0.5 * np.asarray(angle, dtype=float) for angle in (psi, P, R)]
+    (cz, cx, cy), (sz, sx, sy) = map(np.cos, halves), map(np.sin, halves)
     return np.stack(
         [
             cz * cx * cy - sz * sx * sy,
@@ -144,28 +144,32 @@ def quat_from_euler(psi: ArrayLike, P: ArrayLike, R: ArrayLike) -> Array:
     )
 
 
-def euler_from_matrix(C_nb: ArrayLike) -> tuple[Array, Array, Array]:
-    """Return yaw psi, pitch P, roll R of C_nb, rad; psi and R in (-pi, pi], P in [-pi/2, pi/2].
-
-    Where cos P vanishes to rounding only psi +- R is defined, and R = 0 is returned.
-    """
-    C = np.asarray(C_nb, dtype=float)
-    # atan2 rather than asin(C32), which loses half the digits near the poles.
-    cosine = np.hypot(C[..., 0, 1], C[..., 1, 1])
-    P = np.arctan2(C[..., 2, 1], cosine)
-    pole = cosine < 1e-14
-    psi = np.where(pole, np.arctan2(C[..., 1, 0], C[..., 0, 0]), np.arctan2(-C[..., 0, 1], C[..., 1, 1]))
-    R = np.where(pole, 0.0, np.arctan2(-C[..., 2, 0], C[..., 2, 2]))
-    return psi, P, R
-
-
 def euler_from_quat(q_nb: ArrayLike) -> tuple[Array, Array, Array]:
-    """Return yaw psi, pitch P, roll R of unit quaternions, as `euler_from_matrix`."""
-    return euler_from_matrix(matrix_from_quat(q_nb))
+    """Return yaw psi, pitch P, roll R of unit quaternions, rad; psi and R in (-pi, pi], P in [-pi/2, pi/2].
+
+    Where cos P vanishes to rounding only psi + R (at P = pi/2) or psi - R (at -pi/2) is defined, and R = 0 is
+    returned. Close to there psi and R are poorly determined each, but together still give q_nb to rounding.
+    """
+    w, x, y, z = np.moveaxis(np.asarray(q_nb, dtype=float), -1, 0)
+    # (w + x, y + z) and (w - x, z - y) point along (psi + R)/2 and (psi - R)/2; the product of their lengths
+    # is cos P. No entry of C_nb does as well: psi and R from it err each for itself near the poles.
+    half_sum, half_difference = np.arctan2(y + z, w + x), np.arctan2(z - y, w - x)
+    length_sum, length_difference = np.hypot(y + z, w + x), np.hypot(z - y, w - x)
+    P = np.arctan2(2 * (w * x + y * z), length_sum * length_difference)
+    half_difference = np.where(length_difference < 1e-15, half_sum, half_difference)
+    half_sum = np.where(length_sum < 1e-15, half_difference, half_sum)
+    return wrap(half_sum + half_difference), P, wrap(half_sum - half_difference)
+
+
+def euler_from_matrix(C_nb: ArrayLike) -> tuple[Array, Array, Array]:
+    """Return yaw psi, pitch P, roll R of rotation matrices, as `euler_from_quat`."""
+    return euler_from_quat(quat_from_matrix(C_nb))
 
 
 def wrap(angle: ArrayLike) -> Array:
     """Return the angle in (-pi, pi], rad; exact for angles already there."""
     angle = np.asarray(angle, dtype=float)
     turned = angle - 2 * np.pi * np.round(angle / (2 * np.pi))
-    return np.where(turned <= -np.pi, np.pi, turned)
+    # The quotient is rounded: next to an odd multiple of pi the turn may be one too few or too many.
+    turned = np.where(turned > np.pi, turned - 2 * np.pi, turned)
+    return np.where(turned <= -np.pi, turned + 2 * np.pi, turned)

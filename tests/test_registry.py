@@ -50,7 +50,7 @@ def test_finds_classes_and_skips_private_modules(package):
     found = discover(package("madeup_a", one=("One", "one"), two=("Two", "two"), _three=("Three", "three")), Motion)
     assert sorted(found) == ["one", "two"]
     assert issubclass(found["one"], Motion)
-    assert first_line(found["one"]) == "One: does nothing"
+    assert first_line(found["one"]) == "does nothing"
 
 
 def test_refuses_duplicate_names(package):

@@ -131,7 +131,7 @@ def growth_figure(options: Options, trials: "Trials") -> Figure:
                 t = np.unique(table["t_s"])
                 values = np.stack([table[c].reshape(-1, len(t)) for c in columns])
                 style = "-" if reading.gravity == "gravity" else "--"
-                lines.append(Line(reading.label, t, rms(values, axis=(0, 1)), k // 2, style))
+                lines.append(Line(reading.label, t, rms(values.reshape(-1, len(t))), k // 2, style))
             panels.append(Panel("t, s", ylabel, lines, f"{system} accelerometers", xscale="log", yscale="log"))
     caption = f"Growth of the errors, rms over axes and {options.trials} trials, in every reading of the conditions."
     return Figure("error_growth", "Growth of the errors", caption, panels, columns=2)

@@ -106,6 +106,11 @@ POSITION = ("position_x_m", "position_y_m")
 ATTITUDE = tuple(f"integral_{axis}_deg" for axis in AXES)
 
 
+def total(values: Array) -> float:
+    """Return the root mean square over trials and axes."""
+    return float(rms(values.ravel()))
+
+
 def evaluate(options: Options, seed: int, rows: Table) -> Evaluation:
     """Turn the rows into tables, verdicts and figures."""
     trials = Trials.of(options, rows)
@@ -215,7 +220,7 @@ def judge_everywhere(
 
 def improvement(trials: Trials, reading: Reading, columns: tuple[str, ...]) -> float:
     """Return the smallest over the axes of 1 - rms(nine)/rms(six) at the end."""
-    nine, six = (rms(trials.end(reading, system, columns), axis=0) for system in ("nine", "six"))
+    nine, six = (rms(trials.end(reading, system, columns)) for system in ("nine", "six"))
     return float((1 - nine / six).min())
 
 
@@ -225,7 +230,7 @@ def growth_of_advantage(trials: Trials, reading: Reading) -> float:
     growth = []
     for columns in (ATTITUDE, POSITION):
         ratio = [
-            rms(trials.at(reading, "six", columns, t)) / rms(trials.at(reading, "nine", columns, t))
+            total(trials.at(reading, "six", columns, t)) / total(trials.at(reading, "nine", columns, t))
             for t in (duration / 3, 2 * duration / 3, duration)
         ]
         growth += [ratio[2] / ratio[0], ratio[2] / ratio[1]]
@@ -243,7 +248,7 @@ def divergence(trials: Trials, reading: Reading) -> float:
     half, end = trials.options.duration / 2, trials.options.duration
     return float(
         min(
-            rms(trials.at(reading, system, columns, end)) / rms(trials.at(reading, system, columns, half))
+            total(trials.at(reading, system, columns, end)) / total(trials.at(reading, system, columns, half))
             for system in ("nine", "six")
             for columns in (ATTITUDE, POSITION)
         )
@@ -269,7 +274,8 @@ def judge_bias_removal() -> Verdict:
         f"f = (A1 - A4)/2 is free of bias only where opposite accelerometers have equal biases: "
         f"{free} of {len(signs)} combinations of signs"
     )
-    return ("holds" if free == len(signs) else "does not hold"), f"up to {error.max():.2g} m/s^2 of {BIAS:g}", reason
+    measured = f"error of f up to {error.max():.2g} m/s^2 with biases of {BIAS:g}"
+    return Verdict("holds" if free == len(signs) else "does not hold", measured, reason)
 
 
 def judge_zero_rate(seed: int) -> Verdict:
@@ -298,7 +304,7 @@ def reading_table(trials: Trials, placed: Table) -> Table:
     rows = []
     for reading in READINGS:
         admitted = [f"{_counted(placed, reading, d)[0]} of {len(PUBLISHED)}" for d in DEFINITIONS]
-        size = [rms(trials.end(reading, s, c)) for c in (ATTITUDE, POSITION) for s in ("six", "nine")]
+        size = [total(trials.end(reading, s, c)) for c in (ATTITUDE, POSITION) for s in ("six", "nine")]
         gain = [100 * improvement(trials, reading, columns) for columns in (ATTITUDE, POSITION)]
         rows.append((reading.label, *admitted, *size, *gain))
     names = (
@@ -327,8 +333,8 @@ def bound_table(trials: Trials) -> Table:
     options, rows = trials.options, []
     for reading in READINGS:
         geometry = ideal(options, reading.gravity).accelerometers["nine"]
-        bound = rms(cramer_rao_std(geometry, np.array([2.0, 2.0, 2.0]), reading.noise_std(options.rate)))
-        jitter = rms(trials.end(reading, "nine", ["rate_jitter_rad_per_s"]))
+        bound = total(cramer_rao_std(geometry, np.array([2.0, 2.0, 2.0]), reading.noise_std(options.rate)))
+        jitter = total(trials.end(reading, "nine", ["rate_jitter_rad_per_s"]))
         rows.append((reading.label, bound, jitter, jitter / bound))
     return Table.from_rows(
         ("reading", "Cramer-Rao bound, rad/s", "nine accelerometers, rad/s", "ratio"),

@@ -1,0 +1,83 @@
+"""Euler swing: yaw, pitch and roll each swing harmonically, as a ship or a test table does."""
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from bench.errors import Array, require_array
+from bench.motion import STANDARD, Motion
+from bench.motion._options import ORIGIN, STILL, Vector, as_vector, set_options
+from bench.motion._waves import columns, sincos
+from bench.rotation import quat_from_euler
+from bench.signals import Kinematics
+from bench.units import DEG
+
+
+@dataclass(frozen=True)
+class EulerSwing(Motion):
+    """Euler swing: each of yaw psi, pitch P, roll R is offset + amplitude sin(angular_frequency t + phase).
+
+    C_ib = Rz(psi) Rx(P) Ry(R) (3-1-2). The body rate, in which the Euler rates mix, is
+    omega = (cR P' - sR cP psi', R' + sP psi', sR P' + cR cP psi'), and alpha its derivative in closed form.
+    Nothing is singular at P = 90 deg: the angles are prescribed, not found.
+
+    Parameters
+    ----------
+    amplitude, offset, phase : tuple of 3 floats, rad
+        Of psi, P, R.
+    angular_frequency : tuple of 3 floats, rad/s
+        Of psi, P, R.
+    velocity, position : tuple of 3 floats, m/s, m
+        Uniform motion of the body origin; position at t = 0; in i.
+    gravity : tuple of 3 floats, m/s^2
+        Gravitational acceleration, in i.
+
+    Raises
+    ------
+    InputError
+        If an option is not finite or has another shape.
+    """
+
+    name: ClassVar[str] = "euler-swing"
+
+    amplitude: Vector = (3 * DEG, 5 * DEG, 8 * DEG)
+    angular_frequency: Vector = (2 * math.pi / 12, 2 * math.pi / 8, 2 * math.pi / 10)
+    phase: Vector = ORIGIN
+    offset: Vector = ORIGIN
+    velocity: Vector = ORIGIN
+    position: Vector = ORIGIN
+    gravity: Vector = STANDARD
+
+    def __post_init__(self) -> None:
+        vectors = ("amplitude", "angular_frequency", "phase", "offset", "velocity", "position", "gravity")
+        set_options(self, **{name: as_vector(name, getattr(self, name)) for name in vectors})
+
+    def _angle(self, k: int, t: Array) -> tuple[Array, Array, Array]:
+        """Return angle k of (psi, P, R) and its first two derivatives, each shape (n,)."""
+        amplitude, w = self.amplitude[k], self.angular_frequency[k]
+        sine, cosine = sincos(w, t, self.phase[k])
+        return self.offset[k] + amplitude * sine, (amplitude * w) * cosine, (-amplitude * w * w) * sine
+
+    def kinematics(self, t: Array) -> Kinematics:
+        """Return the true kinematics at times t, shape (n,), s."""
+        t = require_array("t", t, (None,))
+        (psi, dpsi, ddpsi), (P, dP, ddP), (R, dR, ddR) = (self._angle(k, t) for k in range(3))
+        sP, cP, sR, cR = np.sin(P), np.cos(P), np.sin(R), np.cos(R)
+        level = cP * dpsi  # rate of the yaw axis across the roll axis, and its derivative
+        dlevel = cP * ddpsi - sP * dP * dpsi
+        wx, wz = cR * dP - sR * level, sR * dP + cR * level
+        return Kinematics(
+            position=np.array(self.position) + t[:, None] * np.array(self.velocity),
+            velocity=np.array(self.velocity),
+            acceleration=STILL,
+            q_ib=quat_from_euler(psi, P, R),
+            omega_ib_b=columns(wx, dR + sP * dpsi, wz),
+            alpha_ib_b=columns(
+                cR * ddP - sR * dlevel - dR * wz,
+                ddR + sP * ddpsi + cP * dP * dpsi,
+                sR * ddP + cR * dlevel + dR * wx,
+            ),
+            gravity=np.array(self.gravity),
+        )
