@@ -151,7 +151,8 @@ def _part(folder: Path, item: Item) -> Path:
 
 
 def _failed(item: Item, error: BaseException) -> CampaignError:
-    return CampaignError(f"item {item.key} failed {TRIES} times, the last time with {error!r}; to rerun it: {item.work}")
+    last = f"the last time with {error!r}"
+    return CampaignError(f"item {item.key} failed {TRIES} times, {last}; to rerun it: {item.work}")
 
 
 def _try_here(measure: Callable[[Any], Table], item: Item) -> Table:

@@ -147,12 +147,13 @@ def _parse(arguments: list[str]) -> Callable[[], None]:
         | Annotated[RunCommand, tyro.conf.subcommand("run")]
         | Annotated[ViewCommand, tyro.conf.subcommand("view")]
     )
-    return tyro.cli(
+    command: ListCommand | ViewCommand = tyro.cli(
         commands,
         prog="strapbench",
         description="Tells the truth about strapdown navigation algorithms.",
         args=arguments,
     )
+    return command
 
 
 def _parse_run(arguments: list[str]) -> Callable[[], None]:
@@ -162,16 +163,17 @@ def _parse_run(arguments: list[str]) -> Callable[[], None]:
     known = experiments()
     name = next((word for word in arguments if word in known), arguments[0])
     chosen = experiment(name)
-    flat = tyro.conf.OmitArgPrefixes
-    options = Annotated[chosen.options, tyro.conf.arg(name="")]
-    command = make_dataclass(
-        "Run",
-        [("common", Annotated[RunOptions, tyro.conf.arg(name="")]), ("options", options, field(default=chosen.options()))],
-        frozen=True,
-    )
-    arguments = [word for word in arguments if word != name]
-    parsed = tyro.cli(
-        flat[command], prog=f"strapbench run {name}", description=f"{chosen.title}. {chosen.source}.", args=arguments
+    flat = tyro.conf.arg(name="")
+    parts: list[Any] = [
+        ("common", Annotated[RunOptions, flat]),
+        ("options", Annotated[chosen.options, flat], field(default=chosen.options())),
+    ]
+    parsed: Any = tyro.cli(
+        make_dataclass("Run", parts, frozen=True),
+        prog=f"strapbench run {name}",
+        description=f"{chosen.title}. {chosen.source}.",
+        args=[word for word in arguments if word != name],
+        config=(tyro.conf.OmitArgPrefixes,),
     )
     return lambda: _run(chosen, parsed.options, parsed.common)
 

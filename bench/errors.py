@@ -153,6 +153,7 @@ def require_unit_quaternion(name: str, value: ArrayLike, shape: tuple[int | None
     bad = np.abs(norm - 1.0) > 1e-9
     if np.any(bad):
         k = np.argmax(bad) if bad.ndim else None
+        value = float(np.atleast_1d(norm)[k or 0])
         where = "" if k is None else f" in row {k}"
-        raise InputError(f"{name} must be unit quaternions (wxyz), got norm {np.atleast_1d(norm)[k or 0]!r}{where}")
+        raise InputError(f"{name} must be unit quaternions (wxyz), got norm {value!r}{where}")
     return q

@@ -135,7 +135,7 @@ def percentiles(values: ArrayLike, levels: ArrayLike) -> Array:
     checked = _numbers("levels", levels)
     if (checked < 0).any() or (checked > 100).any():
         raise InputError(f"levels must be percentages from 0 to 100, got {levels!r}")
-    return np.asarray(np.percentile(_numbers("values", values), levels, axis=0))
+    return np.asarray(np.percentile(_numbers("values", values), checked.reshape(np.shape(levels)), axis=0))
 
 
 def percentile_of(published: ArrayLike, samples: ArrayLike) -> Array:

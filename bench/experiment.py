@@ -301,4 +301,3 @@ def run(
     evaluation = chosen.evaluate(settings, seed, rows)
     outcome = Outcome(chosen, settings, seed, versions(), rows, evaluation)
     return outcome if folder is None else folder.write(outcome, record=record, say=reporter.say)
-

@@ -3,11 +3,12 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
-from bench.errors import Array
+Values = NDArray[np.floating[Any]]
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,25 +22,26 @@ class Line:
     """One curve, and the band around it if there is one."""
 
     label: str
-    x: Array
-    y: Array
+    x: Values
+    y: Values
     colour: int = 0
-    style: Literal["-", "--", ":", "o", "x"] = "-"
-    low: Array | None = None
-    high: Array | None = None
+    style: str = "-"  # matplotlib line styles, or a marker: "o", "x"
+    low: Values | None = None
+    high: Values | None = None
 
 
 @dataclass(frozen=True, eq=False)
 class Panel:
-    """One pair of axes; labels carry the unit."""
+    """One pair of axes; labels carry the unit. `xticks` names the places 0, 1, 2, ... of a categorical axis."""
 
     xlabel: str
     ylabel: str
     lines: Sequence[Line]
     title: str = ""
     xscale: Literal["linear", "log"] = "linear"
-    yscale: Literal["linear", "log", "symlog"] = "linear"
+    yscale: Literal["linear", "log"] = "linear"
     equal: bool = False
+    xticks: Sequence[str] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +61,7 @@ class Figure:
     caption: str
     panels: Sequence[Panel]
     columns: int = 3
+    shared_legend: bool = False
 
 
 def draw(figure: Figure, path: Path) -> None:
@@ -66,17 +69,26 @@ def draw(figure: Figure, path: Path) -> None:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure as Canvas
 
-    rows = -(-len(figure.panels) // figure.columns)
-    canvas = Canvas(figsize=(4.6 * min(figure.columns, len(figure.panels)), 3.6 * rows + 0.6), layout="constrained")
+    columns = min(figure.columns, len(figure.panels))
+    rows = -(-len(figure.panels) // columns)
+    width = max(4.6 * columns, 9.0)
+    canvas = Canvas(figsize=(width, 3.6 * rows + 0.6 + 0.5 * figure.shared_legend), layout="constrained")
     FigureCanvasAgg(canvas)
     canvas.suptitle(figure.title, fontsize=12)
     for k, panel in enumerate(figure.panels):
-        axes = canvas.add_subplot(rows, min(figure.columns, len(figure.panels)), k + 1)
+        axes = canvas.add_subplot(rows, columns, k + 1)
         _draw_panel(axes, panel)
+        if any(line.label for line in panel.lines) and not figure.shared_legend:
+            axes.legend(fontsize=8, loc="best")
+    if figure.shared_legend:
+        handles, labels = canvas.axes[0].get_legend_handles_labels()
+        canvas.legend(handles, labels, fontsize=8, loc="outside lower center", ncols=4)
     canvas.savefig(path, dpi=130, format="png", metadata={"Software": None})
 
 
 def _draw_panel(axes: "Axes", panel: Panel) -> None:
+    from matplotlib.ticker import LogLocator
+
     for line in panel.lines:
         colour = COLOURS[line.colour % len(COLOURS)]
         marks = line.style in ("o", "x")
@@ -92,15 +104,17 @@ def _draw_panel(axes: "Axes", panel: Panel) -> None:
         )
         if line.low is not None and line.high is not None:
             axes.fill_between(np.asarray(line.x), line.low, line.high, color=colour, alpha=0.18, linewidth=0)
-    axes.set_xscale(panel.xscale)
-    if panel.yscale == "symlog":
-        axes.set_yscale("symlog", linthresh=1e-3)
-    else:
-        axes.set_yscale(panel.yscale)
+    for axis, scale in ((axes.xaxis, panel.xscale), (axes.yaxis, panel.yscale)):
+        if scale == "log":
+            axis.axes.set(**{f"{axis.axis_name}scale": "log"})
+            low, high = axis.get_view_interval()
+            axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high < 1e3 * low else (1.0,)))
+            axis.set_major_formatter(lambda value, _: f"{value:g}")
+            axis.set_minor_formatter("")
     axes.set(xlabel=panel.xlabel, ylabel=panel.ylabel)
     axes.set_title(panel.title, fontsize=10)
     axes.grid(True, alpha=0.3)
+    if panel.xticks:
+        axes.set_xticks(range(len(panel.xticks)), panel.xticks, fontsize=8)
     if panel.equal:
         axes.set_aspect("equal", adjustable="datalim")
-    if any(line.label for line in panel.lines):
-        axes.legend(fontsize=8, loc="best")

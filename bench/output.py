@@ -1,9 +1,9 @@
 """The folder of one run: refuses to overwrite, resumes what was interrupted, writes everything at the end.
 
-    inputs.json   what determines the result; written first
-    parts/        finished work items, until the run is complete
-    result.json   inputs, versions, verdicts; written last, so its presence means "finished"
-    report.md, report.html, tables/*.parquet, figures/*.png, recording.rrd
+inputs.json   what determines the result; written first
+parts/        finished work items, until the run is complete
+result.json   inputs, versions, verdicts; written last, so its presence means "finished"
+report.md, report.html, tables/*.parquet, figures/*.png, recording.rrd
 """
 
 import json
@@ -59,7 +59,9 @@ class RunFolder:
             return
         foreign = [name for name in found if name not in MADE_HERE and not name.endswith(".part")]
         if foreign or "inputs.json" not in found:
-            raise InputError(f"{where} is not empty and not a run of strapbench (it holds {found[0]!r}): choose another")
+            raise InputError(
+                f"{where} is not empty and not a run of strapbench (it holds {found[0]!r}): choose another"
+            )
         if force:
             return
         if "result.json" in found:
@@ -141,9 +143,7 @@ def _result(outcome: Outcome) -> dict[str, Any]:
         "source": str(experiment.source),
         "conditions": [asdict(condition) for condition in experiment.conditions],
         "summary": outcome.evaluation.summary,
-        "verdicts": [
-            {**asdict(claim), **asdict(verdict)} for claim, verdict in outcome.verdicts
-        ],
+        "verdicts": [{**asdict(claim), **asdict(verdict)} for claim, verdict in outcome.verdicts],
     }
 
 

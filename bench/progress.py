@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from rich.table import Table as RichTable
@@ -24,7 +25,7 @@ def reporting(title: str) -> Iterator[Reporter]:
         TimeRemainingColumn(),
     )
     with Progress(*columns, console=console) as progress:
-        task = progress.add_task("trials", total=None)
+        task = progress.add_task("parts", total=None)
         console.print(title)
         yield Reporter(
             say=lambda text: progress.console.print(text),
@@ -35,7 +36,7 @@ def reporting(title: str) -> Iterator[Reporter]:
 def print_verdicts(outcome: Outcome) -> None:
     """Print published against measured, with verdicts."""
     console = Console()
-    table = RichTable(title=f"{outcome.experiment.title}: published against measured", show_lines=True)
+    table = RichTable(title=f"{outcome.experiment.title}: published against measured", box=SIMPLE_HEAD)
     for heading in ("claim", "published", "measured", "verdict"):
         table.add_column(heading, no_wrap=heading == "verdict")
     for claim, verdict in outcome.verdicts:

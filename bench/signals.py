@@ -107,7 +107,7 @@ class Accelerometers:
         norm = np.linalg.norm(direction, axis=1)
         if (np.abs(norm - 1) > 1e-9).any():
             k = int(np.argmax(np.abs(norm - 1)))
-            raise InputError(f"direction must hold unit vectors, got norm {norm[k]!r} for {names[k]!r}")
+            raise InputError(f"direction must hold unit vectors, got norm {float(norm[k])!r} for {names[k]!r}")
         for name, value in (("names", names), ("position", position), ("direction", direction)):
             object.__setattr__(self, name, value)
 

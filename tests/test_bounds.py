@@ -3,10 +3,10 @@
 import mpmath
 import numpy as np
 import pytest
-from tests.gyro_free_cases import array, cube, nine, padgaonkar, readings, rotated, tetrahedron, triads
 
 import bench
 from bench.bounds import array_information, cramer_rao_std
+from tests.gyro_free_cases import array, cube, nine, padgaonkar, readings, rotated, tetrahedron, triads
 
 S = 3e-3  # m/s^2
 
@@ -22,7 +22,7 @@ def test_triads_with_centroid_zero_have_the_closed_form_of_skog(omega):
 def test_the_body_origin_does_not_matter():
     # f at another origin is another nuisance with the same span.
     there = tetrahedron()
-    moved = bench.Accelerometers(there.names, there.position + [5.0, -3.0, 2.0], there.direction)
+    moved = bench.Accelerometers(there.names, there.position + np.array([5.0, -3.0, 2.0]), there.direction)
     w = np.array([1.0, 2.0, -0.5])
     # Positions of 5 m hold 1e-15 m, 1e-14 of the arm.
     np.testing.assert_allclose(array_information(moved, w, S), array_information(there, w, S), rtol=1e-12)
@@ -53,7 +53,9 @@ def test_an_unseen_direction_across_the_axes_takes_both_axes_with_it():
 
 def test_a_gyro_adds_its_information_and_bounds_every_axis():
     plain = array_information(nine(), (2, 0, 0), S)
-    np.testing.assert_allclose(array_information(nine(), (2, 0, 0), S, 0.1) - plain, 100 * np.eye(3), rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(
+        array_information(nine(), (2, 0, 0), S, 0.1) - plain, 100 * np.eye(3), rtol=1e-9, atol=1e-9
+    )
     std = cramer_rao_std(nine(), (2, 0, 0), S, [0.1, 0.1])  # two triads
     np.testing.assert_allclose(std[1:], 0.1 / np.sqrt(2), rtol=1e-9)
 

@@ -226,7 +226,10 @@ def test_bad_input_is_named(name, change, message):
 @pytest.mark.parametrize(
     ("t", "message"),
     [
-        (np.arange(20) * 0.02, r"dt = 0.01 s and readings.t must agree, got readings.t\[1\] - readings.t\[0\] = 0.02 s"),
+        (
+            np.arange(20) * 0.02,
+            r"dt = 0.01 s and readings.t must agree, got readings.t\[1\] - readings.t\[0\] = 0.02 s",
+        ),
         (np.delete(np.arange(21), 7) * 0.01, r"readings.t\[7\] - readings.t\[6\] = 0.02 s"),
     ],
 )

@@ -1,4 +1,4 @@
-"""The figures of `gyro-free-circular`: the paper's figures 3 and 4 rebuilt, and the printed numbers among the trials."""
+"""The figures of `gyro-free-circular`: figures 3 and 4 rebuilt, and the printed numbers among the trials."""
 
 from typing import TYPE_CHECKING
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from bench.evaluation import attitude_error, integrated_rate_error, rms
 from bench.experiments._gyro_free_trials import READINGS, Options, ideal, solve_trial
-from bench.figures import Figure, Line, Panel
+from bench.figures import Figure, Line, Panel, Values
 from bench.table import Table
 from bench.units import DEG
 
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from bench.experiments._gyro_free_verdicts import Focus, Trials
 
 AXES = "xyz"
+Curve = tuple[Values, Values]
 COLOUR = {"six": 1, "nine": 0}
 
 
@@ -31,23 +32,25 @@ def figures(options: Options, seed: int, trials: "Trials", focus: "Focus", place
     ]
 
 
-def _bands(trials: "Trials", focus: "Focus", system: str, column: str) -> tuple[np.ndarray, ...]:
+def _bands(trials: "Trials", focus: "Focus", system: str, column: str) -> tuple[Values, Values, Values]:
     table = trials.rows[focus.reading.label, system]
     t = np.unique(table["t_s"])
     values = table[column].reshape(-1, len(t))
-    return t, *np.percentile(values, [5, 95], axis=0)
+    low, high = np.percentile(values, [5, 95], axis=0)
+    return t, low, high
 
 
-def _panel(trials: "Trials", focus: "Focus", column: str, ylabel: str, curves: dict[str, tuple], title: str) -> Panel:
+def _panel(trials: "Trials", focus: "Focus", column: str, ylabel: str, curves: dict[str, Curve], title: str) -> Panel:
     from bench.experiments._gyro_free_verdicts import PUBLISHED
 
     lines = []
     for system in ("six", "nine"):
         t, low, high = _bands(trials, focus, system, column)
         lines.append(Line("", t, np.full_like(t, np.nan), COLOUR[system], low=low, high=high))
-        lines.append(Line(f"{system} accelerometers", *curves[system], COLOUR[system]))
+        x, y = curves[system]
+        lines.append(Line(f"{system} accelerometers", x, y, COLOUR[system]))
     for number in PUBLISHED:
-        if column in number.columns().values():
+        if column in number.columns().values() and trials.options.duration == 60.0:
             lines.append(Line("", np.array([60.0]), np.array([number.value]), COLOUR[number.system], "x"))
     return Panel("t, s", ylabel, lines, title)
 
@@ -109,12 +112,14 @@ def percentile_figure(placed: Table) -> Figure:
             offset = np.arange(len(numbers)) + 0.08 * (k - 3.5)
             lines.append(Line(reading.label, offset, np.array(rank), k, "o" if k < 7 else "x"))
         lines += [Line("", np.array([-0.5, len(numbers) - 0.5]), np.full(2, p), 6, ":") for p in (2.5, 97.5)]
-        panels.append(Panel(", ".join(f"{k} {n}" for k, n in enumerate(numbers)), "percentile", lines, title))
+        panels.append(Panel("", "percentile", lines, title, xticks=[n.replace(", ", "\n") for n in numbers]))
     caption = (
         "Percentile of each printed number among the trials of each reading of the conditions. Between the dotted "
-        "lines (2.5 and 97.5) a reading admits the number; a point at 0 or 100 excludes the reading."
+        "lines (2.5 and 97.5) a reading may admit the number; a point outside excludes it."
     )
-    return Figure("published_percentiles", "The printed numbers among the trials", caption, panels, columns=1)
+    return Figure(
+        "published_percentiles", "The printed numbers among the trials", caption, panels, columns=1, shared_legend=True
+    )
 
 
 def growth_figure(options: Options, trials: "Trials") -> Figure:
@@ -134,4 +139,4 @@ def growth_figure(options: Options, trials: "Trials") -> Figure:
                 lines.append(Line(reading.label, t, rms(values.reshape(-1, len(t))), k // 2, style))
             panels.append(Panel("t, s", ylabel, lines, f"{system} accelerometers", xscale="log", yscale="log"))
     caption = f"Growth of the errors, rms over axes and {options.trials} trials, in every reading of the conditions."
-    return Figure("error_growth", "Growth of the errors", caption, panels, columns=2)
+    return Figure("error_growth", "Growth of the errors", caption, panels, columns=2, shared_legend=True)

@@ -52,8 +52,9 @@ CONDITIONS = (
 )
 
 WITHIN = (
-    "holds if the printed number lies between the 2.5 and the 97.5 percentile of the trials in at least one reading "
-    "of the conditions; does not hold if in none"
+    "a reading of the conditions admits the printed number if it lies between the 2.5 and the 97.5 percentile of the "
+    "trials and not in a gap between them (nearer to a trial than 2.5 % of the trials are to each other); holds if at "
+    "least one reading admits it, does not hold if none does"
 )
 STATEMENT = (
     "holds if true in every reading of the conditions, does not hold if true in none; otherwise it cannot be judged, "
@@ -61,10 +62,7 @@ STATEMENT = (
 )
 
 CLAIMS = (
-    *(
-        Claim(number.key, f"{number.value:g} {number.unit}", number.place, WITHIN)
-        for number in PUBLISHED
-    ),
+    *(Claim(number.key, f"{number.value:g} {number.unit}", number.place, WITHIN) for number in PUBLISHED),
     Claim(
         "improvement arithmetic",
         "96.82, 97.02, 96.69 % (attitude), 89.95, 87.84 % (position)",

@@ -39,4 +39,4 @@ class Motion(ABC):
 
 def motions() -> dict[str, type[Motion]]:
     """Return the motion classes that come with the package, by name."""
-    return discover("bench.motion", Motion)  # type: ignore[type-abstract]
+    return discover("bench.motion", Motion)

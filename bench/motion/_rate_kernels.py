@@ -1,10 +1,14 @@
 """Compiled evaluation of piecewise Chebyshev series at many times."""
 
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.errors import Array
 from bench.jit import njit
 
 
 @njit
-def evaluate(breaks, coefficients, segment, t, out):
+def evaluate(breaks: Array, coefficients: Array, segment: NDArray[np.int64], t: Array, out: Array) -> None:
     """Fill out (n, 4) with the series of coefficients (m, degree + 1, 4) on segment[i] at times t (n,) (Clenshaw)."""
     for i in range(t.shape[0]):
         c = coefficients[segment[i]]

@@ -239,7 +239,7 @@ class GyroFreeSolver(ABC):
         negative, begin = 0, 0
         while begin < n:
             end = min(n, begin + (chunk if state.started else max(chunk, START)))
-            rows = GyroFreeSolution(**{name: getattr(solution, name)[begin:end] for name in FIELDS})
+            rows = GyroFreeSolution(*(getattr(solution, name)[begin:end] for name in FIELDS))
             state, rows = self._fill(state, block[begin:end], rows, begin)
             negative, begin = negative + rows.negative_squares, end
         return replace(solution, negative_squares=negative)
@@ -260,15 +260,14 @@ class GyroFreeSolver(ABC):
         # Whatever is not finite in any row is in the integrals by now.
         if not (np.isfinite(carry).all() and np.isfinite(attitude).all()):
             raise AccuracyError(f"{self.name} overflows{_where(rows, offset)}; the readings or dt are too large")
-        next_state = replace(
-            state, pending=state.pending[:0], started=True, carry=carry, attitude=attitude
-        )
+        next_state = replace(state, pending=state.pending[:0], started=True, carry=carry, attitude=attitude)
         return next_state, replace(rows, negative_squares=negative)
 
 
 def _empty(n: int) -> GyroFreeSolution:
     """Return an unset solution in one piece of memory: large pieces are cheaper to get from the system."""
-    buffer, fields, begin = np.empty(n * sum(FIELDS.values())), {}, 0
+    buffer, begin = np.empty(n * sum(FIELDS.values())), 0
+    fields: dict[str, Any] = {}
     for name, width in FIELDS.items():
         fields[name] = buffer[begin : begin + n * width].reshape(n, width)
         begin += n * width
@@ -286,7 +285,7 @@ def _too_few(n: int) -> InputError:
 
 
 def _checked(readings: ArrayLike, channels: int) -> Array:
-    """Return the readings as the kernels take them: finite, contiguous, and writable (a read-only array is another type)."""
+    """Return finite, contiguous, writable readings (numba takes a read-only array for another type)."""
     block = require_array("readings", readings, (None, channels))
     return block if block.flags.writeable else block.copy()
 

@@ -146,19 +146,6 @@ def motion(mode, K, G, parts, k, free, j, rest, omega, alpha, f):
             if x * free[j, 0] + y * free[j, 1] + z * free[j, 2] < 0.0:
                 x, y, z = -x, -y, -z
         x, y, z = _refine(G, parts, k, x, y, z, rest)
-        if mode == SQUARES and negative > 1:
-            # With two squares at zero the third can have come to lie on the wrong side: a saddle of the cost.
-            _cost(G, parts, k, x, y, z, rest)
-            kicked = False
-            kx, ky, kz = x, y, z
-            if rest[0] > 0.0 and x * x * G[0, 0] < 1e-9 * rest[0]:
-                kx, kicked = math.copysign(math.sqrt(rest[0] / G[0, 0]), free[j, 0]), True
-            if rest[1] > 0.0 and y * y * G[1, 1] < 1e-9 * rest[1]:
-                ky, kicked = math.copysign(math.sqrt(rest[1] / G[1, 1]), free[j, 1]), True
-            if rest[2] > 0.0 and z * z * G[2, 2] < 1e-9 * rest[2]:
-                kz, kicked = math.copysign(math.sqrt(rest[2] / G[2, 2]), free[j, 2]), True
-            if kicked:
-                x, y, z = _refine(G, parts, k, kx, ky, kz, rest)
     omega[k, 0], omega[k, 1], omega[k, 2] = x, y, z
     q = (x * x, y * y, z * z, x * y, x * z, y * z)
     for i in range(3):

@@ -25,7 +25,11 @@ def nine_rates(arm, readings, h, fourth, started, carry, omega, alpha, f):
         sx, sy, sz = a[0] + a[3], a[1] + a[4], a[2] + a[5]
         xx, yy, zz = quarter * (sx - sy - sz), quarter * (sy - sx - sz), quarter * (sz - sx - sy)  # (4)
         negative += int(xx < 0.0) + int(yy < 0.0) + int(zz < 0.0)
-        omega[k, 0], omega[k, 1], omega[k, 2] = math.sqrt(max(xx, 0.0)), math.sqrt(max(yy, 0.0)), math.sqrt(max(zz, 0.0))
+        omega[k, 0], omega[k, 1], omega[k, 2] = (
+            math.sqrt(max(xx, 0.0)),
+            math.sqrt(max(yy, 0.0)),
+            math.sqrt(max(zz, 0.0)),
+        )
         alpha[k, 0] = -half * (a[1] - a[5] - SQRT2 * a[8])  # (6)
         alpha[k, 1] = -half * (a[5] - a[0] + SQRT2 * a[7])
         alpha[k, 2] = -half * (a[0] - a[4] - SQRT2 * a[6])

@@ -105,7 +105,12 @@ def _scaled(accelerometers: Accelerometers) -> tuple[Array, Array, float]:
     return design_matrix(offset / radius, accelerometers.direction), centroid, radius
 
 
-def _rank(singular: Array) -> int:
+def _singular(design: Array) -> Array:
+    return np.asarray(np.linalg.svd(design, compute_uv=False), dtype=np.float64)
+
+
+def _rank(design: Array) -> int:
+    singular = _singular(design)
     return int((singular > TOLERANCE * singular[0]).sum())
 
 
@@ -151,10 +156,9 @@ def _in_words(direction: Array, radius: float) -> str:
 def observability(accelerometers: Accelerometers) -> Observability:
     """Return what the array determines from one reading of each channel."""
     design, centroid, radius = _scaled(accelerometers)
-    singular = np.linalg.svd(design, compute_uv=False)
-    rank, motion_rank = _rank(singular), _rank(np.linalg.svd(design[:, :6], compute_uv=False))
+    singular, rank, motion_rank = _singular(design), _rank(design), _rank(design[:, :6])
     null = _null_space(design, rank, centroid, radius)
-    seen = (np.abs(null) < TOLERANCE).all(axis=0)
+    seen = np.asarray((np.abs(null) < TOLERANCE).all(axis=0))
     mode = "rank-one" if seen[6:].all() else "squares" if seen[6:9].all() else "integral"
     return Observability(
         rank=rank,
@@ -200,10 +204,10 @@ def _integrated_rate(design: Array) -> tuple[Array, Array]:
     measures, and the error then grows exponentially (Padgaonkar's nine) rather than with t.
     """
     Vt = np.linalg.svd(design)[2]
-    lost = Vt[_rank(np.linalg.svd(design, compute_uv=False)) :]
+    lost = Vt[_rank(design) :]
     N = lost.T @ lost
     # All twelve unknowns y = design^+ A + N y; solved for f and alpha.
-    solve = np.linalg.inv(np.eye(6) - N[:6, :6])
+    solve: Array = np.asarray(np.linalg.inv(np.eye(6) - N[:6, :6]), dtype=np.float64)
     return solve @ np.linalg.pinv(design, rcond=TOLERANCE)[:6], -solve @ N[:6, 6:]
 
 

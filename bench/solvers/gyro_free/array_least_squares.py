@@ -21,13 +21,16 @@ class ArrayLeastSquares(GyroFreeSolver):
     What the geometry tells of the six products of two rates decides how the rate is found (see `observability`):
     from all products, with one sign from integrated alpha; from the squares, with three signs; or, where neither
     follows, by integrating alpha. The first two are refined to the maximum of the likelihood in omega with f and
-    alpha free (Gauss-Newton), which reaches the Cramer-Rao bound of one reading where the rate is well above the
-    noise of its square root. With omega known, [f, alpha] is linear least squares.
+    alpha free (Newton's method; a negative square becomes zero and the other rates are fitted anew), which reaches
+    the Cramer-Rao bound of one reading where the rate is well above the root of the noise of its square. With omega
+    known, [f, alpha] is linear least squares.
 
     Notes
     -----
-    An array that determines products but not the squares (Padgaonkar's nine) is integrated: its products give the
-    rate only where all three rates differ from zero. Fourth order in dt.
+    The products of an array that does not determine all three squares are not used for the rate, only kept out of
+    alpha: those of Padgaonkar's nine give the rate only where all three rates differ from zero, and the squares of
+    the paper's nine, mounted along other axes than the body's, only combinations. Such an array is integrated.
+    Fourth order in dt.
 
     References
     ----------

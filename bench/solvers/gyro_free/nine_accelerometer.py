@@ -74,4 +74,5 @@ class NineAccelerometer(GyroFreeSolver):
     ) -> int:
         from bench.solvers.gyro_free._closed_forms import nine_rates
 
-        return int(nine_rates(*constants, readings, dt, self._fourth, started, carry, omega, alpha, f))
+        (arm,) = constants
+        return int(nine_rates(arm, readings, dt, self._fourth, started, carry, omega, alpha, f))

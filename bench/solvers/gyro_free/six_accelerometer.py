@@ -46,7 +46,9 @@ class SixAccelerometer(GyroFreeSolver):
         faces = [(axis, sign) for axis in range(3) for sign in (1, -1)]
         channel = [self._on_face(accelerometers, arm, axis, sign) for axis, sign in faces]
         # The six products d_j * sign all have the sign of p, if the array is right.
-        leaning = sum(sign * accelerometers.direction[c, (axis + 2) % 3] for (axis, sign), c in zip(faces, channel, strict=True))
+        leaning = sum(
+            sign * accelerometers.direction[c, (axis + 2) % 3] for (axis, sign), c in zip(faces, channel, strict=True)
+        )
         p = 1.0 if leaning >= 0 else -1.0
         for (axis, sign), c in zip(faces, channel, strict=True):
             needed = np.zeros(3)
@@ -84,5 +86,6 @@ class SixAccelerometer(GyroFreeSolver):
     ) -> int:
         from bench.solvers.gyro_free._closed_forms import six_rates
 
-        six_rates(*constants, readings, dt, self._fourth, started, carry, omega, alpha, f)
+        arm, p, channel = constants
+        six_rates(arm, p, channel, readings, dt, self._fourth, started, carry, omega, alpha, f)
         return 0
