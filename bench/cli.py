@@ -147,13 +147,13 @@ def _parse(arguments: list[str]) -> Callable[[], None]:
         | Annotated[RunCommand, tyro.conf.subcommand("run")]
         | Annotated[ViewCommand, tyro.conf.subcommand("view")]
     )
-    command: ListCommand | ViewCommand = tyro.cli(
+    command: Any = tyro.cli(
         commands,
         prog="strapbench",
         description="Tells the truth about strapdown navigation algorithms.",
         args=arguments,
     )
-    return command
+    return command  # type: ignore[no-any-return]
 
 
 def _parse_run(arguments: list[str]) -> Callable[[], None]:

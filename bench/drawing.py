@@ -1,9 +1,10 @@
-"""What a compiled MJCF model looks like, as plain arrays: the shapes and sites of one body, in its frame.
+"""What is drawn, and how large: the shapes and sites of one body of a compiled MJCF model, and sizes of a scene.
 
 Reads the arrays of a `mujoco.MjModel` that the caller passes in; neither MuJoCo nor
 a viewer is imported, so that any backend can draw the same instrument.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -46,6 +47,67 @@ class Shape:
     quat: Array
     rgba: tuple[float, ...]
     mesh: int = -1
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Sizes that make both a small instrument and its long path visible.
+
+    Attributes
+    ----------
+    arm : float, m
+        Distance of the farthest part of the instrument from its origin.
+    enlarged : float
+        Scale of the instrument in the view of the world; at least 1.
+    force_scale : float, m per m/s^2
+        Length of the arrows of specific force on the instrument in true size.
+    centre : tuple of float, m
+        What the view of the world looks at.
+    extent : float, m
+        Radius around the centre that it shows.
+    """
+
+    arm: float
+    enlarged: float
+    force_scale: float
+    centre: tuple[float, ...]
+    extent: float
+
+    @classmethod
+    def of(cls, *, parts: Array, path: Array, others: Sequence[Array], strongest: float) -> "Scene":
+        """Return the sizes for one run.
+
+        Parameters
+        ----------
+        parts : ndarray, shape (k, 3), m
+            Parts of the instrument, in its frame.
+        path : ndarray, shape (n, 3), m
+            The true path.
+        others : sequence of ndarray, shape (n, 3), m
+            Estimated paths.
+        strongest : float, m/s^2
+            The largest reading.
+        """
+        arm = max(0.05, float(np.linalg.norm(parts, axis=1).max()))
+        low, high = path.min(axis=0), path.max(axis=0)
+        radius = max(3.0 * arm, 0.5 * float(np.linalg.norm(high - low)))
+        # Estimates that stay near are shown whole; one that runs away does not make all others small.
+        near = [p[np.linalg.norm(p - 0.5 * (low + high), axis=1) < 2.0 * radius] for p in others]
+        shown = np.concatenate([path, *near])
+        low, high = shown.min(axis=0), shown.max(axis=0)
+        return cls(
+            arm=arm,
+            enlarged=max(1.0, round_down(0.25 * radius / arm)),
+            force_scale=round_down(1.2 * arm / max(strongest, 1e-9)),
+            centre=tuple((0.5 * (low + high)).tolist()),
+            extent=max(radius, 0.5 * float(np.linalg.norm(high - low))),
+        )
+
+
+def round_down(value: float) -> float:
+    """Return the largest of 1, 2, 5 times a power of ten that does not exceed value > 0."""
+    power = 10.0 ** np.floor(np.log10(value))
+    return float(max(m * power for m in (1.0, 2.0, 5.0) if m * power <= value * (1 + 1e-12)))
 
 
 def instrumented_body(model: Any) -> int:

@@ -1,4 +1,4 @@
-"""Figures: arrays and labels as frozen records, and one function that draws them. The only file that imports matplotlib."""
+"""Figures: arrays and labels as frozen records, and one function that draws them with matplotlib."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -24,13 +24,20 @@ def reporting(title: str) -> Iterator[Reporter]:
         TimeElapsedColumn(),
         TimeRemainingColumn(),
     )
-    with Progress(*columns, console=console) as progress:
-        task = progress.add_task("parts", total=None)
-        console.print(title)
-        yield Reporter(
-            say=lambda text: progress.console.print(text),
-            progress=lambda done, total: progress.update(task, completed=done, total=total),
-        )
+    bar = Progress(*columns, console=console)
+    task = bar.add_task("parts", total=None)
+
+    def progress(done: int, total: int) -> None:
+        if not bar.live.is_started:  # not before the input has been checked
+            console.print(title)
+            bar.start()
+        bar.update(task, completed=done, total=total)
+
+    try:
+        yield Reporter(say=console.print, progress=progress)
+    finally:
+        if bar.live.is_started:
+            bar.stop()
 
 
 def print_verdicts(outcome: Outcome) -> None:

@@ -8,6 +8,7 @@ bit for bit; poses and arrows as float32.
 
 import os
 from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -16,12 +17,11 @@ import numpy as np
 import rerun as rr
 import rerun.blueprint as rrb
 
-from bench.drawing import Shape, body_shapes, body_sites, instrumented_body, mesh_triangles
+from bench.drawing import Scene, Shape, body_shapes, body_sites, instrumented_body, mesh_triangles, round_down
 from bench.errors import Array, InputError, OutputError, require_scalar
 from bench.rotation import quat_rotate
 from bench.signals import Accelerometers, GyroFreeSolution, Kinematics, Readings
 from bench.traces import TIMELINE, TRUTH_COLOUR, Colour, Trace, estimate_colours, gyro_free_traces
-from bench.viewer import check_recording
 
 CHUNK = 4096  # rows a chunk: several times faster and leaner than one big chunk, and far more than row by row
 FORCE_COLOUR: Colour = (238, 190, 52)
@@ -98,77 +98,45 @@ def write_recording(
     path = Path(path)
     plots = _rows(run.readings.t, "plot_rate", plot_rate)
     poses = _rows(run.readings.t, "pose_rate", pose_rate)
-    scene = _Scene.of(run)
+    shapes = body_shapes(run.model, instrumented_body(run.model))
+    scene = Scene.of(
+        parts=np.array([*run.accelerometers.position, *(shape.position for shape in shapes)]),
+        path=run.truth.position,
+        others=[estimate.position for estimate in run.estimates.values()],
+        strongest=float(np.abs(run.readings.accelerometers).max()),
+    )
     pages = gyro_free_traces(run.truth, run.estimates, run.accelerometers, run.readings)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
     strict = rr.strict_mode()
     rr.set_strict_mode(True)  # else wrong arguments only warn
     try:
-        with rr.RecordingStream("strapbench", send_properties=True) as rec:
-            rec.save(temporary, default_blueprint=_blueprint(scene, pages))
+        # In memory first: rerun's own file writer hangs when the disk is full.
+        with rr.RecordingStream("strapbench") as rec:
+            memory = rec.memory_recording()
+            rec.send_blueprint(_blueprint(scene, pages))
             rec.send_recording_name(run.title)
             if run.parameters:
                 rec.send_property("run", rr.AnyValues(**run.parameters))
             _log_texts(rec, run)
-            _log_instrument(rec, run, scene)
+            _log_instrument(rec, run, shapes, scene)
             _log_paths(rec, run, scene)
             _log_poses(rec, run, scene, poses)
             _log_traces(rec, run.readings.t, pages, plots)
-        check_recording(temporary)  # a disk that is full at the very end is only a warning to rerun
-        os.replace(temporary, path)
-    except (OSError, RuntimeError, ValueError) as error:
-        raise OutputError(f"recording {str(path)!r} cannot be written: {error}") from error
+            content = memory.drain_as_bytes()
     finally:
         rr.set_strict_mode(strict)
-        temporary.unlink(missing_ok=True)
+    _write(path, content)
     return path
 
 
-# --- what is drawn where, and how large -------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class _Scene:
-    """Sizes that make both the instrument and its path visible."""
-
-    arm: float  # m, distance of the farthest accelerometer
-    enlarged: float  # the instrument's scale in the world view
-    force_scale: float  # m of arrow per m/s^2
-    centre: tuple[float, float, float]  # m, of what the world view looks at
-    extent: float  # m, radius of what the world view looks at
-
-    @classmethod
-    def of(cls, run: Run) -> "_Scene":
-        arm = max(0.05, float(np.linalg.norm(run.accelerometers.position, axis=1).max(initial=0.0)))
-        low, high = _box(run.truth.position)
-        path = max(3.0 * arm, 0.5 * float(np.linalg.norm(high - low)))
-        # Estimates that stay near are shown whole; one that runs away does not make all others small.
-        middle = 0.5 * (low + high)
-        near = [p[np.linalg.norm(p - middle, axis=1) < 2.0 * path] for p in _positions(run)]
-        low, high = _box(np.concatenate([run.truth.position, *near]))
-        extent = max(path, 0.5 * float(np.linalg.norm(high - low)))
-        strongest = max(float(np.abs(run.readings.accelerometers).max()), 1e-9)
-        return cls(
-            arm=arm,
-            enlarged=max(1.0, _nice(0.25 * path / arm)),
-            force_scale=_nice(1.2 * arm / strongest),
-            centre=tuple((0.5 * (low + high)).tolist()),
-            extent=extent,
-        )
-
-
-def _box(points: Array) -> tuple[Array, Array]:
-    return points.min(axis=0), points.max(axis=0)
-
-
-def _positions(run: Run) -> list[Array]:
-    return [estimate.position for estimate in run.estimates.values()]
-
-
-def _nice(value: float) -> float:
-    """Return the largest of 1, 2, 5 times a power of ten that does not exceed value > 0."""
-    power = 10.0 ** np.floor(np.log10(value))
-    return float(max(m * power for m in (1.0, 2.0, 5.0) if m * power <= value * (1 + 1e-12)))
+def _write(path: Path, content: bytes) -> None:
+    temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        temporary.write_bytes(content)
+        os.replace(temporary, path)
+    except OSError as error:
+        with suppress(OSError):
+            temporary.unlink()
+        raise OutputError(f"recording {str(path)!r} cannot be written: {error.strerror}") from error
 
 
 def _rows(t: Array, name: str, rate: float | None) -> slice:
@@ -208,16 +176,14 @@ def _log_texts(rec: rr.RecordingStream, run: Run) -> None:
         rec.log(entity, rr.TextDocument(text, media_type=rr.MediaType.MARKDOWN), static=True)
 
 
-def _log_instrument(rec: rr.RecordingStream, run: Run, scene: _Scene) -> None:
+def _log_instrument(rec: rr.RecordingStream, run: Run, shapes: tuple[Shape, ...], scene: Scene) -> None:
     """Log the body in true size for the body-frame view, and enlarged for the world view."""
     rec.log("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
-    body = instrumented_body(run.model)
-    shapes = body_shapes(run.model, body)
     rec.log("world/body/enlarged", rr.Transform3D(scale=scene.enlarged), static=True)
     for parent in ("world/body", "world/body/enlarged"):
         _log_shapes(rec, f"{parent}/instrument", run.model, shapes)
     rec.log("world/body/axes", rr.TransformAxes3D(0.7 * scene.arm), static=True)
-    labels, positions = body_sites(run.model, body)
+    labels, positions = body_sites(run.model, instrumented_body(run.model))
     if labels:
         points = rr.Points3D(positions, radii=0.02 * scene.arm, colors=(240, 240, 240), labels=labels, show_labels=True)
         rec.log("world/body/sites", points, static=True)
@@ -258,7 +224,7 @@ def _primitives(kind: str, group: list[Shape]) -> Any:
     return rr.Capsules3D(radii=size[:, 0], lengths=2 * size[:, 1], translations=start, fill_mode=solid, **look)
 
 
-def _log_paths(rec: rr.RecordingStream, run: Run, scene: _Scene) -> None:
+def _log_paths(rec: rr.RecordingStream, run: Run, scene: Scene) -> None:
     """Log whole paths; thinned, so that a long run stays light."""
     thin = slice(None, None, max(1, len(run.readings) // 4000))
     paths = [("truth", run.truth.position, TRUTH_COLOUR)]
@@ -269,7 +235,7 @@ def _log_paths(rec: rr.RecordingStream, run: Run, scene: _Scene) -> None:
         rec.log(f"world/paths/{name}", line, static=True)
 
 
-def _log_poses(rec: rr.RecordingStream, run: Run, scene: _Scene, rows: slice) -> None:
+def _log_poses(rec: rr.RecordingStream, run: Run, scene: Scene, rows: slice) -> None:
     """Log the moving body with its specific force, and the moving axes of every estimate."""
     t = run.readings.t[rows]
     _log_pose(rec, "world/body", t, run.truth.position[rows], run.truth.q_ib[rows])
@@ -289,7 +255,7 @@ def _log_poses(rec: rr.RecordingStream, run: Run, scene: _Scene, rows: slice) ->
         _log_tag(rec, f"world/tags/{part}", t, position + np.array([0.0, 0.0, height]), text, colour)
 
 
-def _log_forces(rec: rr.RecordingStream, run: Run, scene: _Scene, rows: slice) -> None:
+def _log_forces(rec: rr.RecordingStream, run: Run, scene: Scene, rows: slice) -> None:
     """Log one arrow per accelerometer channel, along its sensing axis."""
     force = scene.force_scale * run.readings.accelerometers[rows, :, None] * run.accelerometers.direction
     m = len(run.accelerometers)
@@ -331,7 +297,7 @@ def _send_scalars(rec: rr.RecordingStream, entity: str, t: Array, values: Array)
 # --- layout -----------------------------------------------------------------------------------------------------
 
 
-def _blueprint(scene: _Scene, pages: Mapping[str, list[Trace]]) -> rrb.Blueprint:
+def _blueprint(scene: Scene, pages: Mapping[str, list[Trace]]) -> rrb.Blueprint:
     summary = [_time_series(trace) for trace in pages.get("Errors", [])[:2]]
     side = rrb.Vertical(_body_view(scene), *summary, row_shares=[2.2, *([1] * len(summary))])
     tabs = [rrb.Horizontal(_world_view(scene), side, column_shares=[3, 2], name="Scene")]
@@ -341,7 +307,7 @@ def _blueprint(scene: _Scene, pages: Mapping[str, list[Trace]]) -> rrb.Blueprint
         tabs.append(rrb.Grid(*views, grid_columns=2, name=name) if by_axis else rrb.Vertical(*views, name=name))
     texts = (rrb.TextDocumentView(origin=name.lower(), name=name) for name in ("Results", "Configuration"))
     return rrb.Blueprint(
-        rrb.Tabs(*tabs, rrb.Horizontal(*texts, name="Report"), active_tab=0),
+        rrb.Tabs(*tabs, *texts, active_tab=0),
         # Following shows the end, where errors are largest, and stands still there.
         rrb.TimePanel(timeline=TIMELINE, play_state="following", state="collapsed"),
         rrb.SelectionPanel(state="collapsed"),
@@ -349,7 +315,7 @@ def _blueprint(scene: _Scene, pages: Mapping[str, list[Trace]]) -> rrb.Blueprint
     )
 
 
-def _world_view(scene: _Scene) -> rrb.Spatial3DView:
+def _world_view(scene: Scene) -> rrb.Spatial3DView:
     centre = np.array(scene.centre)
     size = f", instrument drawn {scene.enlarged:g} times larger" if scene.enlarged > 1 else ""
     true_size = ("axes", "instrument", "sites", "specific_force")
@@ -363,12 +329,12 @@ def _world_view(scene: _Scene) -> rrb.Spatial3DView:
             look_target=centre,
             eye_up=(0, 0, 1),
         ),
-        line_grid=rrb.LineGrid3D(visible=True, spacing=_nice(0.3 * scene.extent)),
+        line_grid=rrb.LineGrid3D(visible=True, spacing=round_down(0.3 * scene.extent)),
         spatial_information=rrb.SpatialInformation(target_frame="tf#/world", show_axes=True),
     )
 
 
-def _body_view(scene: _Scene) -> rrb.Spatial3DView:
+def _body_view(scene: Scene) -> rrb.Spatial3DView:
     return rrb.Spatial3DView(
         origin="/world/body",
         contents=["+ $origin/**", "- $origin/enlarged/**"],

@@ -96,7 +96,7 @@ def _text(value: Any) -> str:
     return str(value).replace("|", "/")
 
 
-class replacing:  # noqa: N801 (used as a context, like contextlib's)
+class replacing:
     """A temporary path beside `path` that replaces it when the block succeeds; nothing is left behind if it fails."""
 
     def __init__(self, path: Path):

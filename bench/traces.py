@@ -138,9 +138,10 @@ def _by_axis(truth: Kinematics, estimates: Mapping[str, GyroFreeSolution]) -> li
 
 def _rates(truth: Kinematics, estimates: Mapping[str, GyroFreeSolution]) -> list[Trace]:
     names, colours = _lines(estimates)
-    rates = np.stack([truth.omega_ib_b, *(estimate.omega_ib_b for estimate in estimates.values())], axis=2)
+    # The truth last: it is drawn above the noise.
+    rates = np.stack([*(estimate.omega_ib_b for estimate in estimates.values()), truth.omega_ib_b], axis=2)
     return [
-        Trace(f"rate/{axis}", f"Rate about body {axis}, rad/s", ("true", *names), (TRUTH_COLOUR, *colours), rates[:, k])
+        Trace(f"rate/{axis}", f"Rate about body {axis}, rad/s", (*names, "true"), (*colours, TRUTH_COLOUR), rates[:, k])
         for k, axis in enumerate(AXES)
     ]
 

@@ -8,10 +8,11 @@ import os
 import socket
 import subprocess
 import sys
+import tempfile
 import time
 import warnings
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -147,36 +148,42 @@ def _headless_viewer(size: str) -> Iterator[Any]:
         s.bind(("127.0.0.1", 0))
         port = s.getsockname()[1]
     environment = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
-    environment.setdefault("XDG_RUNTIME_DIR", "/tmp")
+    environment.setdefault("XDG_RUNTIME_DIR", tempfile.gettempdir())
+    environment["RUST_LOG"] = "error"
     command = [_binary(), "--headless", "--bind", "127.0.0.1", "--port", str(port), "--window-size", size]
-    viewer = subprocess.Popen(
-        [*command, "--hide-welcome-screen"],
-        env={**environment, "RUST_LOG": "error"},
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-    )
+    with tempfile.TemporaryFile() as said:
+        viewer = subprocess.Popen(
+            [*command, "--hide-welcome-screen"], env=environment, stdout=subprocess.DEVNULL, stderr=said
+        )
+        try:
+            _wait_for_port(viewer, port)
+            yield ViewerClient.connect(f"rerun+http://127.0.0.1:{port}/proxy")
+        except ConnectionError as error:  # the port opens before the graphics adapter is tried
+            with suppress(subprocess.TimeoutExpired):
+                viewer.wait(2)  # it may still be saying why
+            _stop(viewer)
+            said.seek(0)
+            raise _explain(said.read().decode(errors="replace")) from error
+        finally:
+            _stop(viewer)
+
+
+def _stop(viewer: "subprocess.Popen[bytes]") -> None:
+    viewer.terminate()
     try:
-        _wait_for_port(viewer, port)
-        client = ViewerClient.connect(f"rerun+http://127.0.0.1:{port}/proxy")
-        try:
-            client.get_state()  # the port opens before the graphics adapter is tried
-        except Exception as error:
-            raise _no_vulkan() from error
-        yield client
-    finally:
-        viewer.terminate()
-        try:
-            viewer.wait(10)
-        except subprocess.TimeoutExpired:
-            viewer.kill()
-            viewer.wait()
+        viewer.wait(10)
+    except subprocess.TimeoutExpired:
+        viewer.kill()
+        viewer.wait()
 
 
-def _no_vulkan() -> BenchError:
-    return BenchError(
-        "a picture needs a Vulkan driver, and none is usable here; on Debian or Ubuntu: "
-        f"apt-get install -y --no-install-recommends {VULKAN_PACKAGES}"
-    )
+def _explain(said: str) -> BenchError:
+    if "render context" in said or "adapter" in said:
+        return BenchError(
+            "a picture needs a Vulkan driver, and none is usable here; on Debian or Ubuntu: "
+            f"apt-get install -y --no-install-recommends {VULKAN_PACKAGES}"
+        )
+    return BenchError(f"the viewer stopped: {said.strip()[:500] or 'it said nothing'}")
 
 
 def _wait_for_port(viewer: "subprocess.Popen[bytes]", port: int) -> None:
@@ -187,7 +194,7 @@ def _wait_for_port(viewer: "subprocess.Popen[bytes]", port: int) -> None:
             return
         except OSError:
             if viewer.poll() is not None:
-                raise _no_vulkan() from None
+                raise ConnectionError("the viewer stopped") from None
             if time.monotonic() > deadline:
                 raise BenchError(f"the viewer did not start within {START_TIMEOUT:g} s") from None
             time.sleep(0.05)

@@ -70,7 +70,7 @@ def test_any_futures_executor_will_do():
 
 
 def test_resumes_by_skipping_finished_parts(tmp_path):
-    with pytest.raises(CampaignInterrupted, match="3 of 6 parts are finished and kept in .*run the same command again"):
+    with pytest.raises(CampaignInterrupted, match=r"3 of 6 parts are finished and kept in .*run the same"):
         run_campaign(interrupt_at_three, ITEMS, folder=tmp_path)
     assert len(list(tmp_path.glob("*.parquet"))) == 3
     told = []

@@ -72,9 +72,8 @@ def test_what_discovery_imports_needs_numpy_only(folder):
 
 
 def test_import_of_bench_loads_nothing_slow():
-    code = "import sys, bench; print([m for m in %r if m in sys.modules])" % (
-        ["mujoco", "rerun", "numba", "scipy", "matplotlib", "rich", "tyro", "pyarrow"],
-    )
+    slow = ["mujoco", "rerun", "numba", "scipy", "matplotlib", "rich", "tyro", "pyarrow"]
+    code = f"import sys, bench; print([m for m in {slow} if m in sys.modules])"
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
     assert result.stdout.strip() == "[]"
 

@@ -163,7 +163,7 @@ def place_published(trials: Trials) -> Table:
             sample = trials.end(reading, number.system, [column])[:, 0]
             low, middle, high = np.percentile(sample, [CENTRAL[0], 50.0, CENTRAL[1]])
             percentile = 100 * float(percentile_of(number.value, sample))
-            distance = (number.value - middle) / max(float(sample.std()), 1e-300)
+            distance = (number.value - middle) / (float(sample.std()) or 1.0)
             gap = isolation(number.value, sample)
             inside = bool(low <= number.value <= high and gap <= GAP)
             where = (number.key, number.unit, number.value, reading.label, definition)
@@ -320,7 +320,7 @@ def nearest_trial(trials: Trials, reading: Reading, definition: str) -> int:
     for number in PUBLISHED:
         column = number.columns().get(definition) or number.columns()[""]
         sample = trials.end(reading, number.system, [column])[:, 0]
-        distance += ((sample - number.value) / max(sample.std(), 1e-300)) ** 2
+        distance += ((sample - number.value) / (sample.std() or 1.0)) ** 2
     return int(np.argmin(distance))
 
 
@@ -374,7 +374,7 @@ def summary(verdicts: dict[str, Verdict], reading: Reading, definition: str, pla
     admitted, _ = _counted(placed, reading, definition)
     return (
         f"Of {len(verdicts)} claims {count['holds']} hold, {count['does not hold']} do not hold and "
-        f"{count['cannot be judged']} cannot be judged. The reading of the conditions that fits the printed tables best "
-        f"is **{reading.label}** with the attitude error as {DEFINITIONS[definition]}: it admits {admitted} of "
+        f"{count['cannot be judged']} cannot be judged. The printed tables fit best the reading **{reading.label}** "
+        f"of the conditions, with the attitude error as {DEFINITIONS[definition]}: it admits {admitted} of "
         f"{len(PUBLISHED)} printed numbers."
     )

@@ -193,7 +193,7 @@ def require_motion(accelerometers: Accelerometers) -> Observability:
 
 def _known_rate(design: Array) -> tuple[Array, Array]:
     """Return M, K of [f, alpha] = M A - K q from a scaled design of full motion rank, the rate being known."""
-    M = np.linalg.pinv(design[:, :6])
+    M: Array = np.asarray(np.linalg.pinv(design[:, :6]), dtype=np.float64)
     return M, M @ design[:, 6:]
 
 
@@ -208,7 +208,8 @@ def _integrated_rate(design: Array) -> tuple[Array, Array]:
     N = lost.T @ lost
     # All twelve unknowns y = design^+ A + N y; solved for f and alpha.
     solve: Array = np.asarray(np.linalg.inv(np.eye(6) - N[:6, :6]), dtype=np.float64)
-    return solve @ np.linalg.pinv(design, rcond=TOLERANCE)[:6], -solve @ N[:6, 6:]
+    everything: Array = np.asarray(np.linalg.pinv(design, rcond=TOLERANCE), dtype=np.float64)
+    return solve @ everything[:6], -solve @ N[:6, 6:]
 
 
 def solver_design(accelerometers: Accelerometers, mode: str) -> Design:
