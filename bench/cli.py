@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class ListCommand:
-    """List experiments, motions, rigs and solvers, one line each."""
+    """List experiments, motions, sensor errors and grades, rigs and solvers, one line each."""
 
     def __call__(self) -> None:
         """Print the lists."""
@@ -109,6 +109,8 @@ def _print_outcome(outcome: "Outcome") -> None:
 
 def _catalogue() -> dict[str, dict[str, str]]:
     from bench.experiment import experiments
+    from bench.imu import error_models
+    from bench.imu.grades import grades
     from bench.mjcf import model_names, model_summary
     from bench.motion import motions
     from bench.registry import first_line
@@ -117,6 +119,8 @@ def _catalogue() -> dict[str, dict[str, str]]:
     return {
         "experiments": {name: experiment.title for name, experiment in experiments().items()},
         "motions": {name: first_line(motion) for name, motion in motions().items()},
+        "sensor errors": {name: first_line(model) for name, model in error_models().items()},
+        "sensor grades": {name: grade.summary for name, grade in grades().items()},
         "rigs": {name: model_summary(name) for name in model_names()},
         **{f"{kind} solvers": {name: first_line(cls) for name, cls in solvers(kind).items()} for kind in KINDS},
     }

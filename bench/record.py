@@ -285,7 +285,8 @@ def _log_tag(rec: rr.RecordingStream, entity: str, t: Array, position: Array, te
 def _log_traces(rec: rr.RecordingStream, t: Array, pages: Mapping[str, list[Trace]], rows: slice) -> None:
     for trace in (trace for traces in pages.values() for trace in traces):
         # The default aggregation halves spikes of a single sample.
-        style = rr.SeriesLines(colors=trace.colours, names=trace.series, widths=1.5, aggregation_policy="MinMax")
+        widths = [2.5 if colour == TRUTH_COLOUR else 1.5 for colour in trace.colours]
+        style = rr.SeriesLines(colors=trace.colours, names=trace.series, widths=widths, aggregation_policy="MinMax")
         rec.log(trace.entity, style, static=True)
         _send_scalars(rec, trace.entity, t[rows], np.ascontiguousarray(trace.values[rows]))
 

@@ -9,6 +9,8 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from bench.experiment import Outcome
 from bench.table import Table
 
@@ -41,13 +43,18 @@ img { max-width: 100%; } figcaption { color: #555; font-size: 0.9rem; } code { b
 """
 
 
-def verdict_table(outcome: Outcome) -> Table:
-    """Return published against measured, with verdicts."""
-    return Table.from_rows(
-        ("claim", "where", "published", "measured", "verdict", "reason"),
-        [(c.key, c.place, c.published, v.measured, v.judgement, v.reason) for c, v in outcome.verdicts],
-        "Published against measured",
-    )
+def verdict_table(outcome: Outcome, *, reasons: bool = True) -> Table:
+    """Return published against measured, with verdicts, and with place and reason if there is room."""
+    columns = {
+        "claim": [claim.key for claim, _ in outcome.verdicts],
+        "where": [claim.place for claim, _ in outcome.verdicts],
+        "published": [claim.published for claim, _ in outcome.verdicts],
+        "measured": [verdict.measured for _, verdict in outcome.verdicts],
+        "verdict": [verdict.judgement for _, verdict in outcome.verdicts],
+        "reason": [verdict.reason for _, verdict in outcome.verdicts],
+    }
+    chosen = [name for name in columns if reasons or name not in ("where", "reason")]
+    return Table({name: np.array(columns[name]) for name in chosen}, "Published against measured")
 
 
 def condition_table(outcome: Outcome) -> Table:

@@ -390,5 +390,7 @@ def test_screenshot(recording: Path, tmp_path: Path) -> None:
     for picture in pictures:
         assert (np.abs(picture - np.array([235, 137, 32]) / 255).max(axis=2) < 0.1).sum() > 50
     assert np.abs(pictures[0] - pictures[1]).mean() > 0.01
-    with pytest.raises(UnknownNameError, match="unknown tab 'Nonsense'; valid: Configuration, Errors, Errors by axis, Rate, "):
+    with pytest.raises(
+        UnknownNameError, match="unknown tab 'Nonsense'; valid: Configuration, Errors, Errors by axis, Rate, "
+    ):
         viewer.screenshot(recording, tmp_path / "x.png", tab="Nonsense")

@@ -24,7 +24,7 @@ def record(outcome: Outcome, path: Path) -> None:
         truth=fixed.truth,
         estimates={f"{system} accelerometers": solution for system, (_, solution) in found.items()},
         configuration=f"# {outcome.experiment.title}\n\n{shown}\n\n{condition_table(outcome).markdown()}",
-        results=f"# Results\n\n{outcome.evaluation.summary}\n\n{verdict_table(outcome).markdown()}",
+        results=f"# Results\n\n{outcome.evaluation.summary}\n\n{verdict_table(outcome, reasons=False).markdown()}",
         parameters={"experiment": outcome.experiment.name, "seed": outcome.seed, "trial": focus.trial},
     )
     write_recording(path, run)

@@ -14,7 +14,7 @@ State = tuple[float, Array | None]
 
 @dataclass(frozen=True)
 class Quantisation(ErrorModel):
-    """Quantisation; exactly one of the two options is given.
+    """Quantisation: counts of a quantum with carried residue, or every reading rounded to a step.
 
     With a `quantum` the sensor counts: it accumulates the integral (reading * dt for samples) and reports
     whole quanta to the nearest, keeping what is left over, so that the sum of all reports is always within one

@@ -15,7 +15,7 @@ State = tuple[np.random.Generator, Array]
 
 @dataclass(frozen=True)
 class WhiteNoise(ErrorModel):
-    """White noise: independent normal errors of the readings; exactly one of the two options is given.
+    """White noise: independent normal errors, given as a density or as the standard deviation of a reading.
 
     With a density N (two-sided, so N^2 is the variance of the mean over one second) a sample has the standard
     deviation N / sqrt(dt), that of an ideal sensor averaging over dt, and an increment N sqrt(dt): what
