@@ -157,7 +157,7 @@ def _parse(arguments: list[str]) -> Callable[[], None]:
         description="Tells the truth about strapdown navigation algorithms.",
         args=arguments,
     )
-    return command  # type: ignore[no-any-return]
+    return command
 
 
 def _parse_run(arguments: list[str]) -> Callable[[], None]:

@@ -2,12 +2,14 @@
 
 import time
 
+import numba
 import numpy as np
 import pytest
 
 import bench
 
 N = 200_000
+REFERENCE = 15e-9  # s a turn of the reference loop on the 3 GHz core that the floors are meant for
 PATIENCE = 20.0  # s: on a machine that is busy with something else the best of a few tries says nothing
 
 
@@ -34,6 +36,23 @@ def tetrahedron():
     return bench.Accelerometers(names, np.repeat(corners, 3, axis=0), np.tile(np.eye(3), (4, 1)))
 
 
+@numba.njit
+def reference(n):
+    """Turn a quaternion n times by the same small angle: what a core can do of this kind of work."""
+    w, x, y, z = 1.0, 0.0, 0.0, 0.0
+    for _ in range(n):
+        a, b, c, d = w - 0.01 * (x + y + z), x + 0.01 * (w + y - z), y + 0.01 * (w + z - x), z + 0.01 * (w + x - y)
+        scale = 1.0 / np.sqrt(a * a + b * b + c * c + d * d)
+        w, x, y, z = a * scale, b * scale, c * scale, d * scale
+    return w
+
+
+def timed(call):
+    begin = time.perf_counter()
+    call()
+    return time.perf_counter() - begin
+
+
 @pytest.mark.parametrize(
     ("name", "make", "floor"),
     [("nine-accelerometer", nine, 10e6), ("array-least-squares", tetrahedron, 1e6)],
@@ -43,10 +62,12 @@ def test_samples_per_second_of_one_core(name, make, floor):
     A, omega = readings(there.position, there.direction, N)
     solver, initial = bench.solver("gyro-free", name), bench.Initial(omega_ib_b=omega, gravity=(0, 0, -9.8))
     solver.solve(there, A[:1000], 0.01, initial)  # compiles
-    best, tries, end = 0.0, 0, time.perf_counter() + PATIENCE
-    while tries < 20 or (best < floor and time.perf_counter() < end):
-        begin = time.perf_counter()
-        solver.solve(there, A, 0.01, initial)
-        best, tries = max(best, N / (time.perf_counter() - begin)), tries + 1
-    print(f"{name}: {best / 1e6:.1f} M samples/s, best of {tries}")
-    assert best > floor
+    reference(1)
+    best, unit, tries, end = np.inf, np.inf, 0, time.perf_counter() + PATIENCE
+    while tries < 20 or (best > N / floor and time.perf_counter() < end):
+        best = min(best, timed(lambda: solver.solve(there, A, 0.01, initial)))
+        unit = min(unit, timed(lambda: reference(N)))
+        tries += 1
+    print(f"ref {unit/N*1e9:.1f} ns"); print(f"{name}: {N / best / 1e6:.1f} M samples/s, {best / unit:.2f} times the reference, best of {tries}")
+    # A core that is slower than the reference allows, or shared just now, is asked for as much less.
+    assert N / best > floor * min(1.0, REFERENCE / (unit / N))

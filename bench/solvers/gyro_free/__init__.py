@@ -196,7 +196,7 @@ class GyroFreeSolver(ABC):
         readings: Readings | ArrayLike,
         dt: float,
         initial: Initial,
-        chunk: int = 2048,
+        chunk: int = 4096,
     ) -> GyroFreeSolution:
         """Return the solution at every reading.
 
