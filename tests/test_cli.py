@@ -28,7 +28,7 @@ def test_run_prints_the_table_and_the_places(capsys, tmp_path):
     arguments = ["run", "gyro-free-circular", "--trials", "1", "--duration", "4", "--jobs", "1", "--no-record"]
     assert main([*arguments, "--out", str(out)]) == 0
     printed = capsys.readouterr().out
-    assert "published against" in printed
+    assert "published against measured" in " ".join(printed.split())
     assert "nine, attitude x" in printed
     for name in ("report.html", "report.md", "figures"):
         assert str(out / name) in printed.replace("\n", "")

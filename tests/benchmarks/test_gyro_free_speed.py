@@ -9,7 +9,7 @@ import pytest
 import bench
 
 N = 200_000
-REFERENCE = 15e-9  # s a turn of the reference loop on the 3 GHz core that the floors are meant for
+REFERENCE = 22e-9  # s a turn of the reference loop on the 3 GHz core that the floors are meant for
 PATIENCE = 20.0  # s: on a machine that is busy with something else the best of a few tries says nothing
 
 
@@ -68,6 +68,6 @@ def test_samples_per_second_of_one_core(name, make, floor):
         best = min(best, timed(lambda: solver.solve(there, A, 0.01, initial)))
         unit = min(unit, timed(lambda: reference(N)))
         tries += 1
-    print(f"ref {unit/N*1e9:.1f} ns"); print(f"{name}: {N / best / 1e6:.1f} M samples/s, {best / unit:.2f} times the reference, best of {tries}")
+    print(f"{name}: {N / best / 1e6:.1f} M samples/s, {best / unit:.2f} times the reference, best of {tries}")
     # A core that is slower than the reference allows, or shared just now, is asked for as much less.
     assert N / best > floor * min(1.0, REFERENCE / (unit / N))
