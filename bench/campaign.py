@@ -6,9 +6,9 @@ depend on the executor, on the number of workers or on the order of completion.
 
 import os
 import signal
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
 from multiprocessing import get_context
 from pathlib import Path
@@ -76,7 +76,8 @@ def _ignore_ctrl_c() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent alone decides
 
 
-def _dask_executor(address: str) -> AbstractContextManager[Executor]:
+@contextmanager
+def _dask_executor(address: str) -> Iterator[Executor]:
     try:
         from distributed import Client
     except ImportError:
@@ -85,8 +86,8 @@ def _dask_executor(address: str) -> AbstractContextManager[Executor]:
         client = Client(address, timeout="10s")
     except (OSError, ValueError) as error:
         raise InputError(f"scheduler must be the address of a Dask scheduler, got {address!r}: {error}") from error
-    executor: AbstractContextManager[Executor] = client.get_executor()
-    return executor
+    with client, client.get_executor() as executor:
+        yield executor
 
 
 def run_campaign(

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from distributed import LocalCluster
 
 import bench
 from bench.campaign import CampaignError, CampaignInterrupted, Item, cpu_count, open_executor, run_campaign
@@ -99,6 +100,16 @@ def test_jobs_default_to_the_cpus_of_this_process():
 
 
 def test_unreachable_scheduler():
-    pytest.importorskip("distributed", reason="needs the extra cluster")
-    with pytest.raises(bench.InputError, match=r"scheduler must be the address of a Dask scheduler, got 'nowhere'"):
-        open_executor(1, "nowhere")
+    message = r"scheduler must be the address of a Dask scheduler, got 'nowhere'"
+    with pytest.raises(bench.InputError, match=message), open_executor(1, "nowhere"):
+        pass
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore")  # dask's own
+def test_dask_gives_the_same_rows():
+    with (
+        LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster,
+        open_executor(1, cluster.scheduler_address) as executor,
+    ):
+        assert same(run_campaign(square, ITEMS, executor=executor), run_campaign(square, ITEMS))
