@@ -40,14 +40,14 @@ from bench.motion import Motion
 from bench.signals import Accelerometers, GyroFreeSolution, Increments, Initial, Kinematics, Readings
 
 if TYPE_CHECKING:
-    from bench.experiment import run
+    from bench.runner import run
     from bench.rig import Rig
     from bench.solvers import solver
 
 __version__ = "0.1.0"
 
 # Names whose modules need more than numpy, imported when first used: `import bench` stays fast.
-_LAZY = {"Rig": "bench.rig", "solver": "bench.solvers", "run": "bench.experiment"}
+_LAZY = {"Rig": "bench.rig", "solver": "bench.solvers", "run": "bench.runner"}
 
 __all__ = [
     "Accelerometers",

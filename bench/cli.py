@@ -81,8 +81,8 @@ class RunOptions:
 
 def _run(experiment: "Experiment", options: Any, common: RunOptions) -> None:
     from bench.campaign import cpu_count
-    from bench.experiment import run
     from bench.progress import reporting
+    from bench.runner import run
 
     with reporting(experiment.title) as reporter:
         outcome = run(

@@ -1,19 +1,19 @@
-"""Experiments: a paper's conditions and claims as data, and the one way to run them.
+"""Experiments: a paper's conditions and claims as data, and what a run of them gives.
 
 An `Experiment` names its conditions (each stated or assumed), its claims and three
 functions: `items` cuts the work, `measure` does one piece, `evaluate` turns the rows
-into tables, verdicts and figures. Running, resuming, writing and reporting are generic.
+into tables, verdicts and figures. ``bench.runner`` runs any of them.
 """
 
 import platform
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, field
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Literal
 
-from bench.campaign import Item, open_executor, run_campaign
-from bench.errors import InputError, require_choice, require_integer
+from bench.campaign import Item
+from bench.errors import require_choice
 from bench.figures import Figure
 from bench.references import Source
 from bench.registry import discover_objects
@@ -174,14 +174,6 @@ class Outcome:
         return inputs_of(self.experiment, self.options, self.seed)
 
 
-@dataclass
-class Reporter:
-    """How a run tells what it does; the default is silent."""
-
-    say: Callable[[str], None] = lambda text: None
-    progress: Callable[[int, int], None] = lambda done, total: None
-
-
 def experiments() -> dict[str, Experiment]:
     """Return all experiments, by name."""
     return discover_objects("bench.experiments", Experiment)
@@ -208,96 +200,3 @@ def versions() -> dict[str, str]:
     """Return the versions of everything that computes."""
     packages = ("strapbench", "mujoco", "numpy", "scipy", "numba", "rerun-sdk")
     return {"python": platform.python_version(), **{name: version(name) for name in packages}}
-
-
-def make_options(chosen: Experiment, values: Mapping[str, Any]) -> Any:
-    """Return the experiment's options with some values set.
-
-    Raises
-    ------
-    InputError
-        If an option is unknown; it lists the valid ones.
-    """
-    known = [f.name for f in fields(chosen.options)]
-    for name in values:
-        if name not in known:
-            raise InputError(f"{chosen.name} has no option {name!r}; options: {', '.join(known)}")
-    return chosen.options(**values)
-
-
-def run(
-    name: str,
-    *,
-    seed: int = 0,
-    jobs: int = 1,
-    out: str | Path | None = None,
-    force: bool = False,
-    record: bool = True,
-    scheduler: str | None = None,
-    reporter: Reporter | None = None,
-    **options: Any,
-) -> Outcome:
-    """Run an experiment.
-
-    Parameters
-    ----------
-    name : str
-        As in ``strapbench list``.
-    seed : int
-        The same seed gives the same bits, whatever the number of jobs.
-    jobs : int
-        Worker processes. More than one needs the usual ``if __name__ == "__main__"`` guard in a script.
-    out : path, optional
-        Folder for report, tables, figures and recording; None writes nothing. An interrupted run in that folder
-        is continued, a finished one is not touched without `force`.
-    force : bool
-        Overwrite the run in `out`.
-    record : bool
-        Write the Rerun recording (only with `out`).
-    scheduler : str, optional
-        Address of a Dask scheduler, used instead of worker processes.
-    reporter : Reporter, optional
-        Told what happens.
-    **options
-        Of the experiment.
-
-    Returns
-    -------
-    Outcome
-
-    Raises
-    ------
-    UnknownNameError
-        If there is no such experiment.
-    InputError
-        If an argument or an option breaks a rule, or `out` cannot be written or holds another run.
-    OutputError
-        If a result cannot be written at the end; the finished parts are kept.
-    CampaignError, CampaignInterrupted
-        If the work fails or is interrupted.
-    """
-    from bench.jit import is_compiled
-    from bench.output import RunFolder
-
-    chosen = experiment(name)
-    seed = require_integer("seed", seed, minimum=0)
-    jobs = require_integer("jobs", jobs, minimum=1)
-    settings = make_options(chosen, options)
-    reporter = reporter or Reporter()
-    items = chosen.items(settings, seed)
-    folder = None if out is None else RunFolder.open(Path(out), inputs_of(chosen, settings, seed), force=force)
-    first_run = not is_compiled()
-    if first_run:
-        reporter.say("Compiling the numerical kernels: the first run of this version takes about 10 s longer.")
-    with open_executor(min(jobs, len(items)), scheduler) as executor:
-        rows = run_campaign(
-            chosen.measure,
-            items,
-            executor=executor,
-            folder=None if folder is None else folder.parts,
-            progress=reporter.progress,
-            first_here=first_run,
-        )
-    evaluation = chosen.evaluate(settings, seed, rows)
-    outcome = Outcome(chosen, settings, seed, versions(), rows, evaluation)
-    return outcome if folder is None else folder.write(outcome, record=record, say=reporter.say)

@@ -8,7 +8,8 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from rich.table import Table as RichTable
 
-from bench.experiment import Outcome, Reporter
+from bench.experiment import Outcome
+from bench.runner import Reporter
 
 COLOURS = {"holds": "green", "does not hold": "red", "cannot be judged": "yellow"}
 

@@ -67,13 +67,13 @@ def test_wrong_usage_is_exit_code_2(arguments, tmp_path, monkeypatch):
 
 
 def test_failure_is_exit_code_1(tmp_path, capsys, monkeypatch):
-    import bench.experiment
+    import bench.runner
     from bench.campaign import CampaignError
 
     def fail(*_, **__):
         raise CampaignError("item x failed 2 times")
 
-    monkeypatch.setattr(bench.experiment, "run_campaign", fail)
+    monkeypatch.setattr(bench.runner, "run_campaign", fail)
     assert main(["run", "gyro-free-circular", "--out", str(tmp_path / "r")]) == 1
     assert "item x failed" in capsys.readouterr().err
 

@@ -1,24 +1,19 @@
 """The figures of `gyro-free-circular`: figures 3 and 4 rebuilt, and the printed numbers among the trials."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from bench.evaluation import attitude_error, integrated_rate_error, rms
+from bench.experiments._gyro_free_published import AXES, PUBLISHED, Focus, Trials
 from bench.experiments._gyro_free_trials import READINGS, Options, ideal, solve_trial
 from bench.figures import Figure, Line, Panel, Values
 from bench.table import Table
 from bench.units import DEG
 
-if TYPE_CHECKING:
-    from bench.experiments._gyro_free_verdicts import Focus, Trials
-
-AXES = "xyz"
 Curve = tuple[Values, Values]
 COLOUR = {"six": 1, "nine": 0}
 
 
-def figures(options: Options, seed: int, trials: "Trials", focus: "Focus", placed: Table) -> list[Figure]:
+def figures(options: Options, seed: int, trials: Trials, focus: Focus, placed: Table) -> list[Figure]:
     """Return all figures."""
     where = (
         f"Reading: {focus.reading.label}. Lines: trial {focus.trial}, the one nearest to the printed numbers; "
@@ -32,7 +27,7 @@ def figures(options: Options, seed: int, trials: "Trials", focus: "Focus", place
     ]
 
 
-def _bands(trials: "Trials", focus: "Focus", system: str, column: str) -> tuple[Values, Values, Values]:
+def _bands(trials: Trials, focus: Focus, system: str, column: str) -> tuple[Values, Values, Values]:
     table = trials.rows[focus.reading.label, system]
     t = np.unique(table["t_s"])
     values = table[column].reshape(-1, len(t))
@@ -40,9 +35,7 @@ def _bands(trials: "Trials", focus: "Focus", system: str, column: str) -> tuple[
     return t, low, high
 
 
-def _panel(trials: "Trials", focus: "Focus", column: str, ylabel: str, curves: dict[str, Curve], title: str) -> Panel:
-    from bench.experiments._gyro_free_verdicts import PUBLISHED
-
+def _panel(trials: Trials, focus: Focus, column: str, ylabel: str, curves: dict[str, Curve], title: str) -> Panel:
     lines = []
     for system in ("six", "nine"):
         t, low, high = _bands(trials, focus, system, column)
@@ -55,7 +48,7 @@ def _panel(trials: "Trials", focus: "Focus", column: str, ylabel: str, curves: d
     return Panel("t, s", ylabel, lines, title)
 
 
-def attitude_figure(options: Options, seed: int, trials: "Trials", focus: "Focus", where: str) -> Figure:
+def attitude_figure(options: Options, seed: int, trials: Trials, focus: Focus, where: str) -> Figure:
     """Return figure 3: attitude errors in time."""
     truth = ideal(options, focus.reading.gravity).truth
     errors = {}
@@ -79,7 +72,7 @@ def attitude_figure(options: Options, seed: int, trials: "Trials", focus: "Focus
     return Figure("figure_3_attitude_errors", "Attitude errors (figure 3 of the paper)", where, panels)
 
 
-def position_figure(options: Options, seed: int, trials: "Trials", focus: "Focus", where: str) -> Figure:
+def position_figure(options: Options, seed: int, trials: Trials, focus: Focus, where: str) -> Figure:
     """Return figure 4: position errors in time, and the paths."""
     truth = ideal(options, focus.reading.gravity).truth
     found = {s: solve_trial(options, seed, focus.reading, focus.trial, s)[1].position for s in ("six", "nine")}
@@ -122,7 +115,7 @@ def percentile_figure(placed: Table) -> Figure:
     )
 
 
-def growth_figure(options: Options, trials: "Trials") -> Figure:
+def growth_figure(options: Options, trials: Trials) -> Figure:
     """Return the rms errors of all readings in time, on logarithmic axes."""
     panels = []
     for system in ("six", "nine"):

@@ -6,9 +6,10 @@ signs and noise, and each printed number is placed in each distribution.
 """
 
 from bench.experiment import Claim, Condition, Experiment
+from bench.experiments._gyro_free_published import PUBLISHED
 from bench.experiments._gyro_free_recording import record
 from bench.experiments._gyro_free_trials import Options, items, measure
-from bench.experiments._gyro_free_verdicts import PUBLISHED, evaluate
+from bench.experiments._gyro_free_verdicts import evaluate
 from bench.references import QIN
 
 CONDITIONS = (
