@@ -8,7 +8,7 @@ import os
 import signal
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from dataclasses import dataclass
 from multiprocessing import get_context
 from pathlib import Path
@@ -125,7 +125,7 @@ def run_campaign(
     parts: dict[str, Table] = {}
     if folder is not None:
         folder.mkdir(parents=True, exist_ok=True)
-        parts = {item.key: Table.read_parquet(path) for item in items if (path := _part(folder, item)).is_file()}
+        parts = _finished(folder, items)
     progress(len(parts), len(items))
 
     def finish(item: Item, table: Table) -> None:
@@ -145,6 +145,15 @@ def run_campaign(
         kept = f"kept in {folder}; run the same command again to continue" if folder else "lost: no folder was given"
         raise CampaignInterrupted(f"interrupted; {len(parts)} of {len(items)} parts are finished and {kept}") from None
     return Table.concatenate([parts[item.key] for item in items])
+
+
+def _finished(folder: Path, items: Sequence[Item]) -> dict[str, Table]:
+    """Return the parts that are there; one that cannot be read was damaged from outside and is made again."""
+    parts = {}
+    for item in items:
+        with suppress(OSError, ValueError):
+            parts[item.key] = Table.read_parquet(_part(folder, item))
+    return parts
 
 
 def _part(folder: Path, item: Item) -> Path:

@@ -6,6 +6,7 @@ Exit codes: 0 done, 2 bad input, 1 failed.
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, field, make_dataclass
+from io import TextIOWrapper
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -129,6 +130,9 @@ def _catalogue() -> dict[str, dict[str, str]]:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return the exit code."""
     arguments = list(sys.argv[1:] if arguments is None else arguments)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):  # a folder's name must not stop a run in a plain locale
+            stream.reconfigure(errors="backslashreplace")
     try:
         command = _parse(arguments)
         command()
@@ -165,7 +169,10 @@ def _parse_run(arguments: list[str]) -> Callable[[], None]:
     from bench.experiment import experiment, experiments
 
     known = experiments()
-    name = next((word for word in arguments if word in known), arguments[0])
+    # The name comes first; after options it is the last word that is one, for a folder may have the same name.
+    places = [k for k, word in enumerate(arguments) if word in known]
+    place = places[-1] if places and arguments[0].startswith("-") else 0
+    name = arguments[place]
     chosen = experiment(name)
     flat = tyro.conf.arg(name="")
     parts: list[Any] = [
@@ -176,7 +183,7 @@ def _parse_run(arguments: list[str]) -> Callable[[], None]:
         make_dataclass("Run", parts, frozen=True),
         prog=f"strapbench run {name}",
         description=f"{chosen.title}. {chosen.source}.",
-        args=[word for word in arguments if word != name],
+        args=[*arguments[:place], *arguments[place + 1 :]],
         config=(tyro.conf.OmitArgPrefixes,),
     )
     return lambda: _run(chosen, parsed.options, parsed.common)

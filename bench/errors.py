@@ -26,11 +26,15 @@ class InputError(BenchError, ValueError):
 class UnknownNameError(InputError):
     """A name that is not registered; the message lists the valid ones."""
 
-    def __init__(self, kind: str, name: object, valid: Iterable[str]):
+    def __init__(self, kind: str, name: object, valid: Iterable[str], otherwise: str = ""):
         valid = sorted(valid)
         close = get_close_matches(str(name), valid, n=1)
         hint = f" (did you mean {close[0]!r}?)" if close else ""
-        super().__init__(f"unknown {kind} {name!r}{hint}; valid: {', '.join(valid) or 'none'}")
+        super().__init__(f"unknown {kind} {name!r}{hint}; valid: {', '.join(valid) or 'none'}{otherwise}")
+        self._arguments = (kind, name, valid, otherwise)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), self._arguments  # else it could not come back from a worker process
 
 
 class AccuracyError(BenchError):
@@ -45,7 +49,11 @@ class OutputError(BenchError):
     """A result could not be written; what was written before is kept."""
 
 
-def require_array(name: str, value: ArrayLike, shape: tuple[int | None, ...]) -> Array:
+class BenchWarning(UserWarning):
+    """The result stands, but is less accurate than its options promise; the message gives the estimate."""
+
+
+def require_array(name: str, value: ArrayLike, shape: tuple[int | None, ...], *, finite: bool = True) -> Array:
     """Return `value` as a C-contiguous float64 array of the given shape, all finite.
 
     Parameters
@@ -55,6 +63,8 @@ def require_array(name: str, value: ArrayLike, shape: tuple[int | None, ...]) ->
     value : array_like
     shape : tuple of int or None
         Expected shape; None admits any positive length.
+    finite : bool
+        False for a caller that checks this itself, chunk by chunk, to save a pass over memory.
 
     Raises
     ------
@@ -62,7 +72,10 @@ def require_array(name: str, value: ArrayLike, shape: tuple[int | None, ...]) ->
         If the value is not numeric, has another shape, is empty, or holds a NaN or an infinity.
     """
     try:
-        array = np.ascontiguousarray(value, dtype=np.float64)
+        array = np.asarray(value)
+        if array.dtype.kind not in "fiu":  # complex numbers, strings and dates would be converted silently
+            raise TypeError
+        array = np.asarray(array, dtype=np.float64, order="C")
     except (TypeError, ValueError) as error:
         raise InputError(f"{name} must be an array of real numbers, got {value!r}") from error
     expected = "(" + ", ".join("n" if k is None else str(k) for k in shape) + ("," if len(shape) == 1 else "") + ")"
@@ -70,7 +83,7 @@ def require_array(name: str, value: ArrayLike, shape: tuple[int | None, ...]) ->
         raise InputError(f"{name} must have shape {expected}, got {np.shape(value)}")
     if any(k is None and n == 0 for k, n in zip(shape, array.shape, strict=True)):
         raise InputError(f"{name} must not be empty, got shape {array.shape}")
-    if not np.isfinite(array).all():
+    if finite and not np.isfinite(array).all():
         where = np.argwhere(~np.isfinite(array))[0]
         index = ", ".join(str(i) for i in where)
         raise InputError(f"{name} must be finite, got {array[tuple(where)]} at [{index}]")
@@ -93,7 +106,8 @@ def require_scalar(name: str, value: Any, *, positive: bool = False, minimum: fl
     except (TypeError, ValueError):
         raise InputError(f"{name} must be {rule}, got {value!r}") from None
     if not np.isfinite(number) or (positive and number <= 0) or (minimum is not None and number < minimum):
-        raise InputError(f"{name} must be {'finite and ' if not np.isfinite(number) else ''}{rule}, got {value!r}")
+        finite = "" if np.isfinite(number) else "finite, "
+        raise InputError(f"{name} must be {finite}{rule}, got {value!r}")
     return number
 
 
@@ -108,6 +122,19 @@ def require_integer(name: str, value: Any, *, minimum: int) -> int:
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)) or value < minimum:
         raise InputError(f"{name} must be an integer >= {minimum}, got {value!r}")
     return int(value)
+
+
+def require_flag(name: str, value: Any) -> bool:
+    """Return `value` if it is True or False.
+
+    Raises
+    ------
+    InputError
+        Otherwise.
+    """
+    if not isinstance(value, (bool, np.bool_)):
+        raise InputError(f"{name} must be True or False, got {value!r}")
+    return bool(value)
 
 
 def require_times(name: str, value: ArrayLike) -> Array:

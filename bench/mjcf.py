@@ -70,12 +70,17 @@ def compile_model(model: "str | Path | mujoco.MjSpec") -> mujoco.MjModel:
 def _path(model: str | Path) -> Path:
     if isinstance(model, str) and model in model_names():
         return models_dir() / f"{model}.xml"
+    if "<" in str(model):
+        raise InputError("model must be a name or a path, got XML text: use mujoco.MjSpec.from_string")
     path = Path(model)
-    if path.is_file():
-        return path
+    try:
+        if path.is_file():
+            return path
+    except OSError as error:  # a name that no file can have
+        raise InputError(f"model {str(model)[:40]!r}... is not a file: {error.strerror}") from error
     if path.suffix or len(path.parts) > 1:
         raise InputError(f"model {str(model)!r} is not a file")
-    raise UnknownNameError("model", str(model), [*model_names(), "or a path to an MJCF file"])
+    raise UnknownNameError("model", str(model), model_names(), ", or a path to an MJCF file")
 
 
 @dataclass(frozen=True)
@@ -129,7 +134,7 @@ def instrument(model: mujoco.MjModel) -> Instrument:
     if not accelerometers and not gyros:
         raise InputError(f"model must have an <accelerometer> or a <gyro>, got {len(sensors)} other sensors")
     if len(gyros) > 1:
-        raise InputError(f"model must have at most one <gyro>, got {len(gyros)}: {', '.join(s.name for s in gyros)}")
+        raise InputError(f"model must have at most one <gyro>, got {len(gyros)}: {', '.join(s.name or 'unnamed' for s in gyros)}")
     body = _common_body(model, [*accelerometers, *gyros])
     sites = np.array([s.objid[0] for s in accelerometers], dtype=np.intp)
     frames = np.array([_matrix(model.site_quat[k]) for k in sites]).reshape(-1, 3, 3)
@@ -138,7 +143,7 @@ def instrument(model: mujoco.MjModel) -> Instrument:
     for k, sensor in enumerate(accelerometers):
         axes = (2,) if _is_single_axis(sensor) else (0, 1, 2)
         columns += [3 * k + axis for axis in axes]
-        name = sensor.name or model.site(sites[k]).name or f"accelerometer {k + 1}"
+        name = sensor.name or f"accelerometer {k + 1}"
         names += [name] if len(axes) == 1 else [f"{name}_{AXES[axis]}" for axis in axes]
     channels = np.array(columns, dtype=np.intp)
     geometry = Accelerometers(

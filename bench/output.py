@@ -17,7 +17,8 @@ from bench.errors import InputError, OutputError
 from bench.experiment import Outcome
 from bench.table import replacing
 
-MADE_HERE = ("result.json", "parts", "tables", "figures", "report.md", "report.html", "recording.rrd", "inputs.json")
+FOLDERS = {"parts": ".parquet", "tables": ".parquet", "figures": ".png"}
+MADE_HERE = ("result.json", *FOLDERS, "report.md", "report.html", "recording.rrd", "inputs.json")
 
 
 @dataclass(frozen=True)
@@ -58,15 +59,20 @@ class RunFolder:
         if not found:
             return
         foreign = [name for name in found if name not in MADE_HERE and not name.endswith(".part")]
+        for name, suffix in FOLDERS.items():
+            foreign += [f"{name}/{f.name}" for f in (self.path / name).glob("*") if f.suffix not in (suffix, ".part")]
         if foreign or "inputs.json" not in found:
-            raise InputError(
-                f"{where} is not empty and not a run of strapbench (it holds {found[0]!r}): choose another"
-            )
+            alien = (foreign or found)[0]
+            raise InputError(f"{where} is not empty and not a run of strapbench (it holds {alien!r}): choose another")
         if force:
             return
         if "result.json" in found:
             raise InputError(f"{where} holds a finished run: choose another folder, or --force to overwrite it")
-        started = json.loads((self.path / "inputs.json").read_text())
+        try:
+            started = json.loads((self.path / "inputs.json").read_text())
+        except ValueError:
+            raise InputError(f"{where} holds a run whose inputs.json is damaged: --force starts it anew") from None
+        inputs = json.loads(json.dumps(inputs))  # a tuple comes back as a list
         if started != inputs:
             raise InputError(
                 f"{where} holds an interrupted run with other inputs ({_difference(started, inputs)}): "
@@ -110,11 +116,12 @@ class RunFolder:
             files[f"figure {figure.name}"] = path = self.path / "figures" / f"{figure.name}.png"
             with replacing(path) as temporary:
                 draw(figure, temporary)
+        outcome = replace(outcome, folder=self.path, files=files)
         if record and outcome.experiment.record is not None:
             say("Writing the recording ...")
-            files["recording"] = self.path / "recording.rrd"
-            outcome.experiment.record(outcome, files["recording"])
-        outcome = replace(outcome, folder=self.path, files=files)
+            recording = self.path / "recording.rrd"
+            outcome.experiment.record(outcome, recording)
+            files["recording"] = recording
         for kind, text in (("report.md", markdown_report(outcome)), ("report.html", html_report(outcome))):
             files[kind] = self.path / kind
             with replacing(files[kind]) as temporary:

@@ -27,12 +27,20 @@ def reporting(title: str) -> Iterator[Reporter]:
     )
     bar = Progress(*columns, console=console)
     task = bar.add_task("parts", total=None)
+    told: int | None = None
 
     def progress(done: int, total: int) -> None:
-        if not bar.live.is_started:  # not before the input has been checked
+        nonlocal told
+        if told is None:  # not before the input has been checked
             console.print(title)
             bar.start()
         bar.update(task, completed=done, total=total)
+        if not console.is_terminal and told != (tenth := 10 * done // total):
+            told = tenth
+            console.print(f"{done} of {total} parts")  # a log file has no moving bar
+        told = told or 0
+        if done == total:
+            bar.stop()
 
     try:
         yield Reporter(say=console.print, progress=progress)

@@ -13,6 +13,7 @@ import threading
 from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 
 import mujoco
@@ -20,7 +21,6 @@ import numpy as np
 from mujoco.batch import Batch
 
 from bench.errors import (
-    AccuracyError,
     Array,
     Indices,
     InputError,
@@ -30,12 +30,11 @@ from bench.errors import (
 )
 from bench.mjcf import compile_model, instrument, sensing_model
 from bench.motion import Motion
+from bench.quadrature import CHECK_EVERY, Consume, Quadrature, Times
 from bench.signals import Accelerometers, Increments, Kinematics, Readings
 
 ROWS = 2048  # rows of one Batch: fits the cache, and any length is served by a few Batches
 HUGE = 1e10  # mjMAXVAL: beyond it MuJoCo silently resets the row and the sensors read zero
-CHECK_EVERY = 64  # the quadrature residual is measured on every 64th interval and the last one
-NODE_COUNTS = (4, 6, 8, 12, 16, 24, 32)
 
 
 class _Workspace:
@@ -166,15 +165,17 @@ class Rig:
             If t is empty, not finite or unsorted, or the motion's kinematics are not usable.
         """
         _require_motion(motion)
-        t = require_times("t", t)
+        t = require_times("t", t).copy()
         accelerometers = np.empty((len(t), len(self.accelerometers)))
         gyro = np.empty((len(t), 3)) if self.has_gyro else None
 
-        def block(workspace: _Workspace, start: int, stop: int) -> None:
-            truth = self._kinematics(motion, t[start:stop])
-            workspace.read(truth, accelerometers[start:stop], None if gyro is None else gyro[start:stop])
+        def keep(start: int, stop: int, readings: Array) -> None:
+            accelerometers[start:stop] = readings[:, : accelerometers.shape[1]]
+            if gyro is not None:
+                gyro[start:stop] = readings[:, accelerometers.shape[1] :]
 
-        self._in_blocks(block, len(t), ROWS)
+        # A copy for the motion, which may do with it as it likes.
+        self._evaluate(motion, len(t), ROWS, lambda start, stop: t[start:stop].copy(), keep)
         return Readings(t, accelerometers, gyro)
 
     def increments(
@@ -190,7 +191,9 @@ class Rig:
         """Return the exact integrals of the readings over every sampling interval.
 
         Gauss-Legendre quadrature of MuJoCo's readings inside each interval. Two node counts are compared on every
-        `check_every`-th interval and the last one, and the count is raised until they agree.
+        `check_every`-th interval and the last one, and the count is raised until they agree; so it is in any other
+        interval where the readings are much rougher than in those. What happens between the nodes of an
+        unchecked interval and touches none of them stays unseen: `check_every=1` for motions with short events.
 
         Parameters
         ----------
@@ -202,7 +205,7 @@ class Rig:
         t0 : float, s
             Start of the first interval.
         tolerance : float
-            Largest residual, rad and m/s, relative to increments that exceed 1.
+            Largest residual, rad and m/s, relative to increments that exceed 1; the rounding of t is allowed for.
         check_every : int
             1 checks every interval, for motions with corners.
 
@@ -211,7 +214,7 @@ class Rig:
         InputError
             If rate or duration is not positive, or the duration is not a whole number of intervals.
         AccuracyError
-            If 32 nodes do not reach the tolerance: the motion is not smooth on the scale of one interval.
+            If 33 nodes do not reach the tolerance: the motion is not smooth on the scale of one interval.
         """
         (whole,) = self.stream(motion, rate, duration, t0, chunk=None, tolerance=tolerance, check_every=check_every)
         return whole
@@ -244,59 +247,25 @@ class Rig:
     def _stream(
         self, motion: Motion, rate: float, n: int, t0: float, chunk: int, tolerance: float, every: int
     ) -> Iterator[Increments]:
-        nodes, residual = self._choose_nodes(motion, rate, n, t0, tolerance, every)
-        for start in range(0, n, chunk):
-            index = np.arange(start, min(start + chunk, n))
-            dvel, dtheta_b = self._integrate(motion, index, rate, t0, nodes)
+        m = len(self.accelerometers)
+        rule = Quadrature(partial(self._evaluate, motion), rate, t0, m + 3 * self.has_gyro, ROWS)
+        for index, sums, residual, nodes in rule.chunks(n, chunk, tolerance, every):
+            dvel = np.ascontiguousarray(sums[:, :m])
+            dtheta_b = np.ascontiguousarray(sums[:, m:]) if self.has_gyro else None
             yield Increments(1.0 / rate, t0 + (index + 1) / rate, dvel, dtheta_b, residual, nodes)
 
-    def _choose_nodes(
-        self, motion: Motion, rate: float, n: int, t0: float, tolerance: float, every: int
-    ) -> tuple[int, float]:
-        """Return the node count that meets the tolerance on the checked intervals, and the residual there."""
-        checked = np.append(np.arange(0, n - 1, every), n - 1)
-        worst = 0.0
-        for nodes in NODE_COUNTS:
-            residual, excess = 0.0, 0.0
-            for start in range(0, len(checked), 16384):
-                index = checked[start : start + 16384]
-                coarse = self._integrate(motion, index, rate, t0, nodes)
-                fine = self._integrate(motion, index, rate, t0, nodes + 1)
-                for a, b in zip(coarse, fine, strict=True):
-                    if a is not None and b is not None and a.size:
-                        difference = float(np.abs(a - b).max())
-                        residual = max(residual, difference)
-                        excess = max(excess, difference / max(1.0, float(np.abs(b).max())))
-            if excess <= tolerance:
-                return nodes, residual
-            worst = residual
-        raise AccuracyError(
-            f"increments at rate {rate:g} Hz: {NODE_COUNTS[-1]} quadrature nodes leave a residual of {worst:.2e} "
-            f"(rad, m/s), above tolerance {tolerance:g}; the motion is not smooth within one interval: "
-            "raise the rate or the tolerance, or put the corners of the motion on interval borders"
-        )
-
-    def _integrate(
-        self, motion: Motion, index: Indices, rate: float, t0: float, nodes: int
-    ) -> tuple[Array, Array | None]:
-        """Return dvel (k, m) and dtheta_b (k, 3) of the intervals with the given numbers."""
-        abscissa, weight = np.polynomial.legendre.leggauss(nodes)
-        abscissa, weight = 0.5 * (abscissa + 1.0), 0.5 * weight / rate
+    def _evaluate(self, motion: Motion, n: int, size: int, times: Times, consume: Consume) -> None:
+        """Read blocks of items start..stop of 0..n at times(start, stop); give the (k, m + 3) readings to consume."""
         m = len(self.accelerometers)
-        dvel = np.empty((len(index), m))
-        dtheta = np.empty((len(index), 3)) if self.has_gyro else None
 
         def block(workspace: _Workspace, start: int, stop: int) -> None:
-            t = (t0 + (index[start:stop, None] + abscissa) / rate).ravel()
-            accelerometers = np.empty((len(t), m))
-            gyro = np.empty((len(t), 3)) if dtheta is not None else None
-            workspace.read(self._kinematics(motion, t), accelerometers, gyro)
-            _weighted_sum(accelerometers, weight, dvel[start:stop])
-            if gyro is not None and dtheta is not None:
-                _weighted_sum(gyro, weight, dtheta[start:stop])
+            t = times(start, stop)
+            readings = np.empty((len(t), m + 3 * self.has_gyro))
+            truth = self._kinematics(motion, t)
+            workspace.read(truth, readings[:, :m], readings[:, m:] if self.has_gyro else None)
+            consume(start, stop, readings)
 
-        self._in_blocks(block, len(index), ROWS // nodes)
-        return dvel, dtheta
+        self._in_blocks(block, n, size)
 
     def _kinematics(self, motion: Motion, t: Array) -> Kinematics:
         # The lock spares a user's motion from having to be thread-safe; MuJoCo runs beside it.
@@ -345,14 +314,6 @@ class Rig:
             except BaseException:  # Ctrl-C too: do not finish the run before saying so
                 abandon()
                 raise
-
-
-def _weighted_sum(values: Array, weight: Array, out: Array) -> None:
-    """Sum groups of len(weight) rows; in a fixed order, so that the bits do not depend on the block."""
-    nodes = values.reshape(len(out), len(weight), -1)
-    np.multiply(nodes[:, 0], weight[0], out=out)
-    for k in range(1, len(weight)):
-        out += weight[k] * nodes[:, k]
 
 
 def whole_intervals(rate: float, duration: float) -> int:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from bench.campaign import open_executor, run_campaign
+from bench.campaign import CampaignInterrupted, open_executor, run_campaign
 from bench.errors import InputError, require_integer
 from bench.experiment import Experiment, Outcome, experiment, inputs_of, versions
 from bench.jit import is_compiled
@@ -92,11 +92,11 @@ def run(
     settings = make_options(chosen, options)
     reporter = reporter or Reporter()
     items = chosen.items(settings, seed)
-    folder = None if out is None else RunFolder.open(Path(out), inputs_of(chosen, settings, seed), force=force)
     first_run = not is_compiled()
-    if first_run:
-        reporter.say("Compiling the numerical kernels: the first run of this version takes about 10 s longer.")
     with open_executor(min(jobs, len(items)), scheduler) as executor:
+        folder = None if out is None else RunFolder.open(_path(out), inputs_of(chosen, settings, seed), force=force)
+        if first_run:
+            reporter.say("Compiling the numerical kernels: the first run of this version takes about 10 s longer.")
         rows = run_campaign(
             chosen.measure,
             items,
@@ -105,6 +105,16 @@ def run(
             progress=reporter.progress,
             first_here=first_run,
         )
-    evaluation = chosen.evaluate(settings, seed, rows)
-    outcome = Outcome(chosen, settings, seed, versions(), rows, evaluation)
-    return outcome if folder is None else folder.write(outcome, record=record, say=reporter.say)
+    try:
+        evaluation = chosen.evaluate(settings, seed, rows)
+        outcome = Outcome(chosen, settings, seed, versions(), rows, evaluation)
+        return outcome if folder is None else folder.write(outcome, record=record, say=reporter.say)
+    except KeyboardInterrupt:
+        kept = "" if folder is None else f" and kept in {folder.parts}; run the same command again to continue"
+        raise CampaignInterrupted(f"interrupted; all {len(items)} parts are finished{kept}") from None
+
+
+def _path(out: str | Path) -> Path:
+    if not isinstance(out, (str, Path)) or not str(out):
+        raise InputError(f"out must be a path, got {out!r}")
+    return Path(out)

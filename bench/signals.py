@@ -159,7 +159,7 @@ class Increments:
         Integral of omega_ib_b; None for a rig without a gyro.
     residual : float, rad and m/s
         Largest difference between two node counts of the quadrature over the checked intervals, gyro channels
-        in rad and accelerometer channels in m/s: an estimate (from above) of the quadrature error.
+        in rad and accelerometer channels in m/s: for smooth readings an upper estimate of the quadrature error.
     nodes : int
         Gauss-Legendre nodes used in every interval.
     """

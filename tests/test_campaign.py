@@ -1,6 +1,7 @@
 """Campaigns: parts, resuming, retrying, interruption, and independence of the executor."""
 
 import os
+import pickle
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -78,6 +79,16 @@ def test_resumes_by_skipping_finished_parts(tmp_path):
     rows = run_campaign(square, ITEMS, folder=tmp_path, progress=lambda done, total: told.append((done, total)))
     assert told == [(3, 6), (4, 6), (5, 6), (6, 6)]
     assert same(rows, run_campaign(square, ITEMS))
+
+
+def test_a_damaged_part_is_made_again(tmp_path):
+    (tmp_path / "n1.parquet").write_bytes(b"rubbish")
+    assert same(run_campaign(square, ITEMS, folder=tmp_path), run_campaign(square, ITEMS))
+
+
+def test_errors_come_back_from_a_worker():
+    error = bench.UnknownNameError("motion", "conning", ["coning"])
+    assert str(pickle.loads(pickle.dumps(error))) == str(error)
 
 
 @pytest.mark.parametrize("jobs", [1, 2])

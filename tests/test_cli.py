@@ -66,6 +66,29 @@ def test_wrong_usage_is_exit_code_2(arguments, tmp_path, monkeypatch):
         main(arguments)
 
 
+def test_a_folder_may_have_the_name_of_the_experiment(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    options = ["--trials", "1", "--duration", "4", "--jobs", "1", "--no-record"]
+    assert main(["run", "gyro-free-circular", "--out", "gyro-free-circular", *options]) == 0
+    assert main(["run", "--out", "gyro-free-circular", "--force", *options, "gyro-free-circular"]) == 0
+    assert (tmp_path / "gyro-free-circular" / "result.json").exists()
+
+
+def test_ctrl_c_after_the_work_says_that_it_is_kept(tmp_path, monkeypatch, capsys):
+    import bench.output
+
+    def interrupt(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(bench.output, "_result", interrupt)
+    options = ["--trials", "1", "--duration", "4", "--jobs", "1", "--no-record", "--out", str(tmp_path / "r")]
+    assert main(["run", "gyro-free-circular", *options]) == 1
+    assert "all 8 parts are finished and kept in" in capsys.readouterr().err
+    assert len(list((tmp_path / "r" / "parts").glob("*.parquet"))) == 8
+    monkeypatch.undo()
+    assert main(["run", "gyro-free-circular", *options]) == 0
+
+
 def test_failure_is_exit_code_1(tmp_path, capsys, monkeypatch):
     import bench.runner
     from bench.campaign import CampaignError

@@ -53,6 +53,22 @@ def test_foreign_folder_is_never_touched(tmp_path, force):
     assert [path.name for path in tmp_path.iterdir()] == ["thesis.tex"]
 
 
+def test_a_users_file_among_ours_is_named_and_kept(tmp_path):
+    folder = RunFolder.open(tmp_path, INPUTS)
+    (folder.path / "tables").mkdir()
+    (folder.path / "tables" / "my_notes.txt").write_text("mine")
+    with pytest.raises(bench.InputError, match=r"it holds 'tables/my_notes.txt'"):
+        RunFolder.open(tmp_path, INPUTS, force=True)
+    assert (folder.path / "tables" / "my_notes.txt").read_text() == "mine"
+
+
+def test_damaged_inputs(tmp_path):
+    (RunFolder.open(tmp_path, INPUTS).path / "inputs.json").write_text("{")
+    with pytest.raises(bench.InputError, match=r"inputs.json is damaged: --force starts it anew"):
+        RunFolder.open(tmp_path, INPUTS)
+    RunFolder.open(tmp_path, INPUTS, force=True)
+
+
 def test_out_is_a_file(tmp_path):
     (tmp_path / "f").write_text("")
     with pytest.raises(bench.InputError, match=r"out '.*/f' cannot be written"):

@@ -222,6 +222,42 @@ class TestIncrements:
             rig.increments(Corner(), 100.0, 1.0, check_every=1)
         rig.increments(Corner(), 200.0, 1.0, check_every=1)  # the corner is on a border
 
+    def test_short_pulse_in_an_unchecked_interval_is_found(self, rig):
+        """A smooth push of 1 ms inside one interval of 10 ms, far from the checked ones; its integral is known."""
+
+        class Pulse(bench.Motion):
+            def kinematics(self, t):
+                push = 100 * np.exp(-0.5 * ((t - 50.005) / 1e-3) ** 2)
+                acceleration = push[:, None] * [1.0, 0, 0]
+                return bench.Kinematics(
+                    [0, 0, 0], [0, 0, 0], acceleration, [1, 0, 0, 0], [0, 0, 0], [0, 0, 0], [0, 0, 0]
+                )
+
+        got = rig.increments(Pulse(), 100.0, 100.0)
+        assert got.dvel[:, 0].sum() == pytest.approx(100 * np.sqrt(2 * np.pi) * 1e-3, abs=5e-12)  # 3 x 1e-12
+        parts = rig.stream(Pulse(), 100.0, 100.0, chunk=7)
+        np.testing.assert_array_equal(np.concatenate([part.dvel for part in parts]), got.dvel)
+
+    def test_late_times_are_not_mistaken_for_roughness(self, rig):
+        motion = Cone(np.deg2rad(5), 4 * np.pi)
+        got = rig.increments(motion, 100.0, 1.0, t0=1e6)
+        # t is known to 1.2e-10 s there, and a phase of 4 pi * 1e6 rad to 1.9e-9 rad.
+        assert got.residual < 1e-10
+        np.testing.assert_allclose(got.dtheta_b[:, 2], motion.dtheta(100.0, 100)[:, 2], rtol=0, atol=1e-15)
+
+    def test_motion_may_spoil_its_argument(self, rig):
+        class Careless(Tumble):
+            def kinematics(self, t):
+                truth = super().kinematics(t)
+                t *= 0
+                return truth
+
+        t = np.linspace(0, 1, 50)
+        got = rig.sample(Careless(), t)
+        np.testing.assert_array_equal(t, np.linspace(0, 1, 50))
+        np.testing.assert_array_equal(got.t, t)
+        assert got.t is not t
+
     def test_rig_without_gyro(self):
         spec = random_array(1, 4)
         spec.delete(spec.sensor("gyro"))
@@ -330,7 +366,9 @@ class TestLoad:
     def test_unknown_name_lists_the_models(self):
         with pytest.raises(bench.UnknownNameError, match=r"unknown model 'nine_acelerometer' \(did you mean 'nine_a"):
             bench.Rig.load("nine_acelerometer")
-        with pytest.raises(bench.UnknownNameError, match="imu, nine_accelerometer, or a path to an MJCF file, six"):
+        with pytest.raises(
+            bench.UnknownNameError, match=r"imu, nine_accelerometer, six_accelerometer, .*, or a path to an MJCF file"
+        ):
             bench.Rig.load("x")
 
     def test_missing_file(self):
@@ -378,6 +416,21 @@ class TestLoad:
         path.write_text(xml)
         with pytest.raises(bench.InputError, match=message):
             bench.Rig.load(path)
+
+    def test_xml_text_and_impossible_names(self):
+        with pytest.raises(bench.InputError, match=r"got XML text: use mujoco.MjSpec.from_string"):
+            bench.Rig.load("<mujoco/>")
+        with pytest.raises(bench.InputError, match=r"model 'xxxx.*is not a file: File name too long"):
+            bench.Rig.load("x" * 5000)
+
+    def test_unnamed_triads_have_different_names(self):
+        xml = (
+            "<mujoco><worldbody><body><geom size='1'/><site name='s'/></body></worldbody>"
+            "<sensor><accelerometer site='s'/><accelerometer site='s'/></sensor></mujoco>"
+        )
+        names = bench.Rig.load(mujoco.MjSpec.from_string(xml)).accelerometers.names
+        assert len(set(names)) == 6
+        assert names[0] == "accelerometer 1_x"
 
     def test_neither_name_nor_spec(self):
         with pytest.raises(bench.InputError, match="model must be a name, a path to an MJCF file or an MjSpec, got 9"):

@@ -202,7 +202,7 @@ def bad(**change):
         (bad(readings=np.zeros((5, 2))), r"readings must have shape \(n, \d+\), got \(5, 2\)"),
         (bad(readings=np.zeros(5)), "readings must have shape"),
         (bad(readings="x"), "readings must be an array of real numbers"),
-        (bad(readings=0), "at least 4 readings, got 3"),
+        (bad(readings=0), "at least 4 for fourth-order integration, got 3"),
         (bad(readings=np.nan), r"readings must be finite, got nan at \[2, 1\]"),
         (bad(readings=np.inf), r"readings must be finite, got inf at \[2, 1\]"),
         (bad(chunk=0), "chunk must be an integer >= 1, got 0"),
@@ -252,7 +252,7 @@ def test_a_stream_that_ends_too_early_is_an_error(name):
     there, A, initial = wave_case(name, n=20)
     solver = bench.solver("gyro-free", name)
     state, _ = solver.advance(solver.start(there, DT, initial), A[:3])
-    with pytest.raises(bench.InputError, match="at least 4 readings, got 3"):
+    with pytest.raises(bench.InputError, match="at least 4 for fourth-order integration, got 3"):
         solver.finish(state)
 
 

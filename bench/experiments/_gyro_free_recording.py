@@ -9,14 +9,14 @@ from bench.experiments._gyro_free_trials import SYSTEMS, ideal, solve_trial
 def record(outcome: Outcome, path: Path) -> None:
     """Write the recording of the focused trial, both systems in one scene."""
     from bench.mjcf import compile_model
-    from bench.record import Run, write_recording
+    from bench.record.gyro_free import GyroFreeRun, write_gyro_free_recording
     from bench.report import condition_table, verdict_table
 
     options, focus = outcome.options, outcome.evaluation.focus
     fixed = ideal(options, focus.reading.gravity)
     found = {s: solve_trial(options, outcome.seed, focus.reading, focus.trial, s) for s in SYSTEMS}
     shown = f"Reading of the conditions: **{focus.reading.label}**; trial {focus.trial}, seed {outcome.seed}."
-    run = Run(
+    run = GyroFreeRun(
         title=f"{outcome.experiment.name}, trial {focus.trial}",
         model=compile_model(SYSTEMS["nine"]),
         accelerometers=fixed.accelerometers["nine"],
@@ -27,4 +27,4 @@ def record(outcome: Outcome, path: Path) -> None:
         results=f"# Results\n\n{outcome.evaluation.summary}\n\n{verdict_table(outcome, reasons=False).markdown()}",
         parameters={"experiment": outcome.experiment.name, "seed": outcome.seed, "trial": focus.trial},
     )
-    write_recording(path, run)
+    write_gyro_free_recording(path, run)

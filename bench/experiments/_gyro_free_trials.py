@@ -23,6 +23,7 @@ NOISE = 2e-10  # (m/s^2)^2 per sample or per hertz: not stated which
 SYSTEMS = {"nine": "nine_accelerometer", "six": "six_accelerometer"}
 TRIALS_PER_ITEM = 25
 REPORT_EVERY = 2.0  # s, spacing of the reported errors
+MOST_READINGS = 1e7  # a trial is held in memory
 NOISE_READINGS = ("variance", "density")
 INTEGRATIONS = ("fourth-order", "first-order")
 GRAVITIES = ("gravity", "no gravity")
@@ -50,15 +51,16 @@ class Options:
     circle: Literal["accelerating", "constant-rate"] = "accelerating"
 
     def __post_init__(self) -> None:
-        from bench.rig import whole_intervals
-
         require_integer("trials", self.trials, minimum=1)
         require_choice("circle", self.circle, ("accelerating", "constant-rate"))
-        rate = require_scalar("rate", self.rate, positive=True)
+        rate = require_scalar("rate", self.rate, minimum=1.0)
         duration = require_scalar("duration", self.duration, minimum=2 * REPORT_EVERY)
-        whole_intervals(rate, REPORT_EVERY)
         if duration % REPORT_EVERY:
             raise InputError(f"duration must be a multiple of {REPORT_EVERY:g} s, got {self.duration!r}")
+        if rate * REPORT_EVERY % 1:
+            raise InputError(f"rate must give a whole number of readings in {REPORT_EVERY:g} s, got {self.rate!r} Hz")
+        if rate * duration > MOST_READINGS:
+            raise InputError(f"rate * duration must not exceed {MOST_READINGS:g} readings, got {rate * duration:g}")
 
     @property
     def t(self) -> Array:

@@ -281,7 +281,7 @@ def _where(rows: GyroFreeSolution, offset: int) -> str:
 
 
 def _too_few(n: int) -> InputError:
-    return InputError(f"fourth-order integration needs at least {START} readings, got {n}")
+    return InputError(f"readings must be at least {START} for fourth-order integration, got {n}")
 
 
 def _checked(readings: ArrayLike, channels: int) -> Array:
