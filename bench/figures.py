@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 # Okabe and Ito's palette: distinct for colour-blind readers, and in grey.
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#666666")
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#666666", "#000000")
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,6 +28,7 @@ class Line:
     style: str = "-"  # matplotlib line styles, or a marker: "o", "x"
     low: Values | None = None
     high: Values | None = None
+    note: str = ""  # written beside the middle of the curve
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,6 +46,36 @@ class Panel:
 
 
 @dataclass(frozen=True, eq=False)
+class HeatMap:
+    """A map on a grid: one colour, and a few letters if there are any, for every cell.
+
+    Attributes
+    ----------
+    columns, rows : sequence of str
+        Labels of the cells, from the left and from the bottom; labels carry the unit in xlabel and ylabel.
+    values : ndarray, shape (rows, columns)
+        NaN leaves a cell grey.
+    low, high : float
+        Ends of the colour scale.
+    text : ndarray of str, shape (rows, columns), optional
+        Written into the cells.
+    colour_label : str
+        What the colours show; several maps with the same label and ends can be compared.
+    """
+
+    xlabel: str
+    ylabel: str
+    columns: Sequence[str]
+    rows: Sequence[str]
+    values: Values
+    low: float
+    high: float
+    text: NDArray[np.str_] | None = None
+    title: str = ""
+    colour_label: str = ""
+
+
+@dataclass(frozen=True, eq=False)
 class Figure:
     """Panels side by side, `columns` in a row.
 
@@ -59,7 +90,7 @@ class Figure:
     name: str
     title: str
     caption: str
-    panels: Sequence[Panel]
+    panels: Sequence[Panel | HeatMap]
     columns: int = 3
     shared_legend: bool = False
 
@@ -77,6 +108,9 @@ def draw(figure: Figure, path: Path) -> None:
     canvas.suptitle(figure.title, fontsize=12)
     for k, panel in enumerate(figure.panels):
         axes = canvas.add_subplot(rows, columns, k + 1)
+        if isinstance(panel, HeatMap):
+            _draw_map(axes, panel)
+            continue
         _draw_panel(axes, panel)
         if any(line.label for line in panel.lines) and not figure.shared_legend:
             axes.legend(fontsize=8, loc="best")
@@ -102,6 +136,9 @@ def _draw_panel(axes: "Axes", panel: Panel) -> None:
             markersize=6,
             linewidth=1.3,
         )
+        if line.note:
+            middle = (line.x[len(line.x) // 2], line.y[len(line.y) // 2])
+            axes.annotate(line.note, middle, (3, 3), textcoords="offset points", fontsize=7, color=colour)
         if line.low is not None and line.high is not None:
             axes.fill_between(np.asarray(line.x), line.low, line.high, color=colour, alpha=0.18, linewidth=0)
     for axis, scale in ((axes.xaxis, panel.xscale), (axes.yaxis, panel.yscale)):
@@ -118,3 +155,19 @@ def _draw_panel(axes: "Axes", panel: Panel) -> None:
         axes.set_xticks(range(len(panel.xticks)), panel.xticks, fontsize=8)
     if panel.equal:
         axes.set_aspect("equal", adjustable="datalim")
+
+
+def _draw_map(axes: "Axes", panel: HeatMap) -> None:
+    image = axes.imshow(panel.values, cmap="viridis", vmin=panel.low, vmax=panel.high, origin="lower", aspect="auto")
+    axes.set_facecolor("#cccccc")
+    axes.figure.colorbar(image, ax=axes, label=panel.colour_label, extend="both", pad=0.01)
+    axes.set(xlabel=panel.xlabel, ylabel=panel.ylabel)
+    axes.set_title(panel.title, fontsize=10)
+    axes.set_xticks(range(len(panel.columns)), panel.columns, fontsize=7, rotation=90 if len(panel.columns) > 9 else 0)
+    axes.set_yticks(range(len(panel.rows)), panel.rows, fontsize=7)
+    if panel.text is None:
+        return
+    middle = 0.5 * (panel.low + panel.high)
+    for (row, column), text in np.ndenumerate(panel.text):
+        colour = "black" if not panel.values[row, column] < middle else "white"
+        axes.text(column, row, text, ha="center", va="center", fontsize=6, color=colour)

@@ -71,3 +71,37 @@ WANG = Source(
 HG9900 = Source("HG9900", "Honeywell: HG9900 inertial measurement unit, brochure N61-1638-000-000")
 HG1700 = Source("HG1700", "Honeywell: HG1700 inertial measurement unit, brochure N61-1619-000-001")
 ADIS16495 = Source("ADIS16495", "Analog Devices: ADIS16495 data sheet, Rev. C, 2020")
+SAVAGE = Source(
+    "Savage",
+    "Savage P. G.: A unified mathematical framework for strapdown algorithm design, "
+    "J. Guidance, Control, and Dynamics 29(2), 237-249, 2006",
+)
+MILLER = Source(
+    "Miller",
+    "Miller R. B.: A new strapdown attitude algorithm, J. Guidance, Control, and Dynamics 6(4), 287-291, 1983",
+)
+LEE = Source(
+    "Lee",
+    "Lee J. G., Yoon Y. J., Mark J. G., Tazartes D. A.: Extension of strapdown attitude algorithm for "
+    "high-frequency base motion, J. Guidance, Control, and Dynamics 13(4), 738-743, 1990",
+)
+IGNAGNI = Source(
+    "Ignagni",
+    "Ignagni M. B.: Efficient class of optimized coning compensation algorithms, "
+    "J. Guidance, Control, and Dynamics 19(2), 424-429, 1996",
+)
+SONG = Source(
+    "Song",
+    "Song M., Wu W., Pan X.: Approach to recovering maneuver accuracy in classical coning algorithms, "
+    "J. Guidance, Control, and Dynamics 36(6), 1872-1881, 2013",
+)
+WU = Source(
+    "Wu",
+    "Wu Y.: RodFIter: attitude reconstruction from inertial measurement by functional iteration, "
+    "IEEE Trans. Aerospace and Electronic Systems 54(5), 2131-2142, 2018",
+)
+WU_YAN = Source(
+    "WuYan",
+    "Wu Y., Yan G.: Attitude reconstruction from inertial measurements: QuatFIter and its comparison with RodFIter, "
+    "IEEE Trans. Aerospace and Electronic Systems 55(6), 3629-3639, 2019",
+)

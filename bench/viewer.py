@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from bench.errors import BenchError, InputError, OutputError, require_choice, require_integer, require_scalar
-from bench.traces import TIMELINE
+from bench.record.traces import TIMELINE
 
 VULKAN_PACKAGES = "mesa-vulkan-drivers libvulkan1"
 START_TIMEOUT = 30.0  # s

@@ -9,7 +9,8 @@ from rerun.chunk import RrdReader
 import bench
 from bench.experiment import experiment, experiments
 from bench.experiments import _gyro_free_verdicts as verdicts
-from bench.experiments._gyro_free_trials import BIAS, NOISE, READINGS, Options, ideal, solve_trial
+from bench.experiments._gyro_free_published import Trials
+from bench.experiments._gyro_free_trials import BIAS, NOISE, READINGS, Options, Work, ideal, solve_trial
 from bench.table import Table
 
 SHORT = {
@@ -85,7 +86,7 @@ def test_number_of_jobs_does_not_change_the_bits(short, tmp_path):
 
 def test_a_trial_alone_is_the_trial_of_the_campaign(short):
     options = short.options
-    _, alone = solve_trial(options, 3, READINGS[4], 1, "nine")
+    _, alone = solve_trial(Work(options, 3, READINGS[4], 1, 1), 1, "nine")
     row = short.rows.where(reading=READINGS[4].label, system="nine", trial=1)
     truth = ideal(options, READINGS[4].gravity).truth
     assert row["position_x_m"][-1] == alone.position[-1, 0] - truth.position[-1, 0]
@@ -132,12 +133,26 @@ class TestJudging:
         assert f"{BIAS:.2g}" in verdict.measured
         assert "64 of 512" in verdict.reason  # three pairs must agree: 2^9 / 2^3
 
-    def test_isolation_sees_gaps_that_percentiles_do_not(self):
+    def test_reach_sees_gaps_that_percentiles_do_not(self):
+        """Made-up errors: bias puts each axis at -1 or 1, noise of 0.1 blurs them, and axes go together."""
         rng = np.random.default_rng(0)
-        lattice = rng.choice([-1.0, 0.0, 1.0], 500) + 0.01 * rng.standard_normal(500)
-        assert verdicts.isolation(0.5, lattice) == 1.0
-        assert verdicts.isolation(0.001, lattice) < 0.975
-        assert 0.025 < np.mean(lattice < 0.5) < 0.975
+        nodes, noise = np.array([[-1.0, -1.0], [1.0, 1.0]]), 0.1 * rng.standard_normal((60, 2))
+
+        def table(values):
+            return Table({"x": values[:, 0], "y": values[:, 1]})
+
+        key = (READINGS[0].label, "nine")
+        trials = Trials(Options(), {}, {key: table(noise)}, {key: table(nodes)})
+        for value, too_far in ((0.9, False), (0.0, True)):
+            assert (trials.distance(READINGS[0], "nine", ["x"], np.array([value])) > 1) == too_far
+        both = [trials.distance(READINGS[0], "nine", ["x", "y"], np.array(v)) for v in ([0.9, 1.1], [1.0, -1.0])]
+        assert both[0] < 1 < both[1]  # each of 1 and -1 can arise, but not together
+
+    def test_signs_are_enumerated(self):
+        work = Work(Options(), 0, READINGS[0], 0, 512, "signs")
+        values = {work.errors(trial, 9).models[0].value for trial in range(512)}
+        assert len(values) == 512
+        assert {abs(v) for value in values for v in value} == {BIAS}
 
     def test_short_or_few_trials_cannot_judge(self, short):
         by_key = short.evaluation.verdicts

@@ -11,7 +11,15 @@ ROOT = Path(__file__).parents[1]
 FILES = sorted((ROOT / "bench").rglob("*.py"))
 ONLY_HERE = {
     "mujoco": {"bench/rig.py", "bench/mjcf.py"},
-    "rerun": {"bench/record.py", "bench/viewer.py"},
+    "rerun": {
+        "bench/record/_attitude_scene.py",
+        "bench/record/attitude.py",
+        "bench/record/gyro_free.py",
+        "bench/record/instrument.py",
+        "bench/record/layout.py",
+        "bench/record/stream.py",
+        "bench/viewer.py",
+    },
     "matplotlib": {"bench/figures.py"},
     "rich": {"bench/progress.py"},
     "tyro": {"bench/cli.py"},
@@ -74,6 +82,14 @@ def test_what_discovery_imports_needs_numpy_only(folder):
 def test_import_of_bench_loads_nothing_slow():
     slow = ["mujoco", "rerun", "numba", "scipy", "matplotlib", "rich", "tyro", "pyarrow"]
     code = f"import sys, bench; print([m for m in {slow} if m in sys.modules])"
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
+    assert result.stdout.strip() == "[]"
+
+
+def test_import_of_the_viewer_loads_no_recorder():
+    """Who looks at a recording, or only names a colour, does not pay for rerun."""
+    slow = ["rerun", "mujoco", "pyarrow", "scipy", "matplotlib"]
+    code = f"import sys, bench.viewer, bench.record.traces; print([m for m in {slow} if m in sys.modules])"
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
     assert result.stdout.strip() == "[]"
 

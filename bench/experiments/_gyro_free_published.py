@@ -1,12 +1,12 @@
 """The printed numbers of `gyro-free-circular`, and the trials among which they are placed."""
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from bench.errors import Array
-from bench.experiments._gyro_free_trials import READINGS, Options, Reading
+from bench.experiments._gyro_free_trials import NOISE_READINGS, READINGS, Options, Reading, Work
 from bench.table import Table
 
 AXES = "xyz"
@@ -62,6 +62,13 @@ PUBLISHED = tuple(
     )
     for axis, value in enumerate(values)
 )
+ROWS = {  # the numbers that one run printed side by side
+    f"{system}, {quantity}, all axes at once": tuple(
+        n for n in PUBLISHED if (n.system, n.quantity) == (system, quantity)
+    )
+    for quantity in ("attitude", "position")
+    for system in ("six", "nine")
+}
 IMPROVEMENTS = {"attitude": (96.82, 97.02, 96.69), "position": (89.95, 87.84)}  # %, printed
 
 
@@ -73,6 +80,10 @@ class Focus:
     definition: str
     trial: int
 
+    def work(self, options: Options, seed: int) -> Work:
+        """Return the work that this trial is a part of."""
+        return Work(options, seed, self.reading, self.trial, 1)
+
 
 @dataclass(frozen=True, eq=False)
 class Trials:
@@ -80,12 +91,39 @@ class Trials:
 
     options: Options
     rows: dict[tuple[str, str], Table]
+    noise: dict[tuple[str, str], Table]
+    signs: dict[tuple[str, str], Table]
 
     @classmethod
     def of(cls, options: Options, rows: Table) -> "Trials":
         """Cut the rows once; selecting them again and again would be slow."""
-        cut = {(r.label, s): rows.where(reading=r.label, system=s) for r in READINGS for s in ("six", "nine")}
-        return cls(options, cut)
+
+        def cut(kind: str) -> dict[tuple[str, str], Table]:
+            some = rows.where(kind=kind)
+            return {(r.label, s): some.where(reading=r.label, system=s) for r in READINGS for s in ("six", "nine")}
+
+        return cls(options, cut("trial"), cut("noise"), cut("signs"))
+
+    def distance(self, reading: Reading, system: str, columns: Sequence[str], values: Array) -> float:
+        """Return how far the values are from what bias can make, against what noise can add; above 1 is too far.
+
+        The errors without noise are enumerated over all signs of the biases; the distance to the nearest of them
+        is taken in the metric of the noise (Hotelling's T^2) and divided by its 97.5 percentile.
+        """
+        from scipy.stats import f
+
+        quiet = replace(reading, noise=NOISE_READINGS[0])
+        nodes, noise = (
+            np.stack([table[name] for name in columns], axis=1)
+            for table in (self.signs[quiet.label, system], self.noise[reading.label, system])
+        )
+        n, k = noise.shape
+        if n <= k:
+            return float("nan")  # a run too short to judge
+        covariance = np.atleast_2d(np.cov(noise, rowvar=False))
+        off = values - nodes
+        nearest = np.einsum("ni,ni->n", off, np.linalg.solve(covariance, off.T).T).min()
+        return float(np.sqrt(nearest / (k * (n - 1) / (n - k) * f.ppf(0.975, k, n - k))))
 
     def at(self, reading: Reading, system: str, columns: Iterable[str], t: float) -> Array:
         """Return the errors of all trials at one time, shape (trials, columns)."""

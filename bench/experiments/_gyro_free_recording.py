@@ -14,7 +14,7 @@ def record(outcome: Outcome, path: Path) -> None:
 
     options, focus = outcome.options, outcome.evaluation.focus
     fixed = ideal(options, focus.reading.gravity)
-    found = {s: solve_trial(options, outcome.seed, focus.reading, focus.trial, s) for s in SYSTEMS}
+    found = {s: solve_trial(focus.work(options, outcome.seed), focus.trial, s) for s in SYSTEMS}
     shown = f"Reading of the conditions: **{focus.reading.label}**; trial {focus.trial}, seed {outcome.seed}."
     run = GyroFreeRun(
         title=f"{outcome.experiment.name}, trial {focus.trial}",

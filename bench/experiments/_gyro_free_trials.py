@@ -22,6 +22,7 @@ BIAS = 1.5e-5  # m/s^2, stated
 NOISE = 2e-10  # (m/s^2)^2 per sample or per hertz: not stated which
 SYSTEMS = {"nine": "nine_accelerometer", "six": "six_accelerometer"}
 TRIALS_PER_ITEM = 25
+NOISE_TRIALS = 60  # trials without bias, which tell how noise alone scatters the errors
 REPORT_EVERY = 2.0  # s, spacing of the reported errors
 MOST_READINGS = 1e7  # a trial is held in memory
 NOISE_READINGS = ("variance", "density")
@@ -85,11 +86,13 @@ class Reading:
         """Return the standard deviation of one sample at the given rate, m/s^2."""
         return (NOISE if self.noise == "variance" else NOISE * rate) ** 0.5
 
+    def white(self) -> WhiteNoise:
+        """Return the noise of an accelerometer."""
+        return WhiteNoise(density=NOISE**0.5) if self.noise == "density" else WhiteNoise(sample_std=NOISE**0.5)
+
     def errors(self) -> SensorErrors:
         """Return the accelerometer errors: +-bias with random signs, and white noise."""
-        density = self.noise == "density"
-        white = WhiteNoise(density=NOISE**0.5) if density else WhiteNoise(sample_std=NOISE**0.5)
-        return SensorErrors((TurnOnBias(value=BIAS, random_sign=True), white))
+        return SensorErrors((TurnOnBias(value=BIAS, random_sign=True), self.white()))
 
 
 READINGS = tuple(Reading(*choice) for choice in product(NOISE_READINGS, INTEGRATIONS, GRAVITIES))
@@ -97,13 +100,29 @@ READINGS = tuple(Reading(*choice) for choice in product(NOISE_READINGS, INTEGRAT
 
 @dataclass(frozen=True)
 class Work:
-    """Some trials of one reading."""
+    """Some trials of one reading.
+
+    Attributes
+    ----------
+    kind : {"trial", "noise", "signs"}
+        Bias and noise; noise alone; bias alone, one trial for each combination of its signs, numbered in binary.
+    """
 
     options: Options
     seed: int
     reading: Reading
     first: int
     count: int
+    kind: Literal["trial", "noise", "signs"] = "trial"
+
+    def errors(self, trial: int, channels: int) -> SensorErrors:
+        """Return the accelerometer errors of one trial."""
+        if self.kind == "trial":
+            return self.reading.errors()
+        if self.kind == "noise":
+            return SensorErrors((self.reading.white(),))
+        signs = [1.0 - 2.0 * (trial >> channel & 1) for channel in range(channels)]
+        return SensorErrors((TurnOnBias(value=tuple(BIAS * sign for sign in signs)),))
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,9 +154,7 @@ def ideal(options: Options, gravity: str) -> Ideal:
     )
 
 
-def solve_trial(
-    options: Options, seed: int, reading: Reading, trial: int, system: str
-) -> tuple[Readings, GyroFreeSolution]:
+def solve_trial(work: Work, trial: int, system: str) -> tuple[Readings, GyroFreeSolution]:
     """Return what the accelerometers of one system report in one trial, and what its solver makes of it.
 
     The noise depends on seed, trial and system only, so that the readings of the conditions are compared on the
@@ -145,11 +162,12 @@ def solve_trial(
     """
     from bench.solvers import solver
 
+    options, reading = work.options, work.reading
     fixed = ideal(options, reading.gravity)
+    felt = fixed.readings[system].accelerometers
     sensor = list(SYSTEMS).index(system)
-    reported = reading.errors().apply(
-        fixed.readings[system].accelerometers, 1 / options.rate, "samples", seed=seed, trial=trial, sensor=sensor
-    )
+    errors = work.errors(trial, felt.shape[1])
+    reported = errors.apply(felt, 1 / options.rate, "samples", seed=work.seed, trial=trial, sensor=sensor)
     readings = Readings(options.t, reported)
     method = solver("gyro-free", f"{system}-accelerometer", integration=reading.integration)
     start = Initial.of(fixed.truth)
@@ -163,26 +181,35 @@ def items(options: Options, seed: int) -> list[Item]:
         for first in range(0, options.trials, TRIALS_PER_ITEM):
             count = min(TRIALS_PER_ITEM, options.trials - first)
             work.append(Item(f"reading-{number}-trial-{first:05d}", Work(options, seed, reading, first, count)))
+        if options.trials >= NOISE_TRIALS:
+            noise = Work(options, seed, reading, 0, NOISE_TRIALS, "noise")
+            work.append(Item(f"reading-{number}-noise", noise))
+            if reading.noise == NOISE_READINGS[0]:  # without noise its reading does not matter
+                work.append(Item(f"reading-{number}-signs", Work(options, seed, reading, 0, 2**9, "signs")))
     return work
 
 
 def measure(work: Work) -> Table:
     """Return the errors of both systems in some trials, one row per trial, system and reported time."""
-    trials = range(work.first, work.first + work.count)
-    return Table.concatenate([_errors(work, trial, system) for trial in trials for system in SYSTEMS])
+    tables = []
+    for system, count in (("nine", work.count), ("six", min(work.count, 2**6) if work.kind == "signs" else work.count)):
+        tables += [_errors(work, trial, system) for trial in range(work.first, work.first + count)]
+    return Table.concatenate(tables)
 
 
 def _errors(work: Work, trial: int, system: str) -> Table:
     options = work.options
     truth = ideal(options, work.reading.gravity).truth
-    _, solution = solve_trial(options, work.seed, work.reading, trial, system)
+    _, solution = solve_trial(work, trial, system)
     rotation = attitude_error(solution.q_ib, truth.q_ib) / DEG
     rate = solution.omega_ib_b - truth.omega_ib_b
     integral = integrated_rate_error(solution.omega_ib_b, truth.omega_ib_b, 1 / options.rate) / DEG
     position = solution.position - truth.position
-    every = slice(round(REPORT_EVERY * options.rate), None, round(REPORT_EVERY * options.rate))
+    step = round(REPORT_EVERY * options.rate)
+    every = slice(step if work.kind == "trial" else -1, None, step)
     n = len(options.t[every])
     columns: dict[str, Any] = {
+        "kind": np.full(n, work.kind),
         "reading": np.full(n, work.reading.label),
         "system": np.full(n, system),
         "trial": np.full(n, trial),

@@ -1,0 +1,35 @@
+"""The parts of a layout that every kind of recording shares: tabs, plots and texts."""
+
+from collections.abc import Iterable
+from typing import Any
+
+import rerun.blueprint as rrb
+
+from bench.record.traces import TIMELINE, Trace
+
+
+def layout(tabs: Iterable[Any]) -> rrb.Blueprint:
+    """Return the layout of some tabs, followed by the texts; panels collapsed, at the end of the run."""
+    texts = (rrb.TextDocumentView(origin=name.lower(), name=name) for name in ("Results", "Configuration"))
+    return rrb.Blueprint(
+        rrb.Tabs(*tabs, *texts, active_tab=0),
+        # Following shows the end, where errors are largest, and stands still there.
+        rrb.TimePanel(timeline=TIMELINE, play_state="following", state="collapsed"),
+        rrb.SelectionPanel(state="collapsed"),
+        rrb.BlueprintPanel(state="collapsed"),
+    )
+
+
+def time_series(trace: Trace, *, legend: bool = True) -> rrb.TimeSeriesView:
+    """Return the plot of everything at and below the entity of a trace, scaled for its values."""
+    return rrb.TimeSeriesView(
+        origin=f"/{trace.entity}",
+        name=trace.title,
+        axis_y=rrb.ScalarAxis(range=trace.display_range()) if trace.logarithmic else None,
+        plot_legend=rrb.PlotLegend(rrb.Corner2D[trace.empty_corner()], visible=legend),
+    )
+
+
+def eye(position: Any, target: Any = (0, 0, 0)) -> rrb.EyeControls3D:
+    """Return an eye that orbits round its target, z up."""
+    return rrb.EyeControls3D(kind=rrb.Eye3DKind.Orbital, position=position, look_target=target, eye_up=(0, 0, 1))
