@@ -40,8 +40,8 @@ from bench.motion import Motion
 from bench.signals import Accelerometers, GyroFreeSolution, Increments, Initial, Kinematics, Readings
 
 if TYPE_CHECKING:
-    from bench.runner import run
     from bench.rig import Rig
+    from bench.runner import run
     from bench.solvers import solver
 
 __version__ = "0.1.0"

@@ -134,20 +134,21 @@ def instrument(model: mujoco.MjModel) -> Instrument:
     if not accelerometers and not gyros:
         raise InputError(f"model must have an <accelerometer> or a <gyro>, got {len(sensors)} other sensors")
     if len(gyros) > 1:
-        raise InputError(f"model must have at most one <gyro>, got {len(gyros)}: {', '.join(s.name or 'unnamed' for s in gyros)}")
+        names = ", ".join(s.name or "unnamed" for s in gyros)
+        raise InputError(f"model must have at most one <gyro>, got {len(gyros)}: {names}")
     body = _common_body(model, [*accelerometers, *gyros])
     sites = np.array([s.objid[0] for s in accelerometers], dtype=np.intp)
     frames = np.array([_matrix(model.site_quat[k]) for k in sites]).reshape(-1, 3, 3)
-    names: list[str] = []
+    channel_names: list[str] = []
     columns: list[int] = []
     for k, sensor in enumerate(accelerometers):
         axes = (2,) if _is_single_axis(sensor) else (0, 1, 2)
         columns += [3 * k + axis for axis in axes]
         name = sensor.name or f"accelerometer {k + 1}"
-        names += [name] if len(axes) == 1 else [f"{name}_{AXES[axis]}" for axis in axes]
+        channel_names += [name] if len(axes) == 1 else [f"{name}_{AXES[axis]}" for axis in axes]
     channels = np.array(columns, dtype=np.intp)
     geometry = Accelerometers(
-        tuple(names), model.site_pos[sites[channels // 3]], frames[channels // 3, :, channels % 3]
+        tuple(channel_names), model.site_pos[sites[channels // 3]], frames[channels // 3, :, channels % 3]
     )
     return Instrument(body, model.site_pos[sites], model.site_quat[sites], channels, geometry, bool(gyros))
 

@@ -96,7 +96,9 @@ def run(
     with open_executor(min(jobs, len(items)), scheduler) as executor:
         folder = None if out is None else RunFolder.open(_path(out), inputs_of(chosen, settings, seed), force=force)
         if first_run:
-            reporter.say("Compiling the numerical kernels: the first run of this version takes about 10 s longer.")
+            reporter.say(
+                "Compiling the numerical kernels: the first run of this version takes about 10 s longer, or more with many solvers."
+            )
         rows = run_campaign(
             chosen.measure,
             items,

@@ -119,8 +119,8 @@ def percentile_figure(placed: Table) -> Figure:
         panels.append(Panel("", "percentile", lines, title, xticks=[n.replace(", ", "\n") for n in numbers]))
     caption = (
         "Percentile of each printed number among the trials of each reading of the conditions. Dots: the reading "
-        "admits the number; crosses: it does not, because the number lies beyond the dotted lines (2.5 and 97.5) or in a gap "
-        "between what bias and noise can make."
+        "admits the number; crosses: it does not, because the number lies beyond the dotted lines (2.5 and 97.5) or in "
+        "a gap between what bias and noise can make."
     )
     return Figure(
         "published_percentiles", "The printed numbers among the trials", caption, panels, columns=1, shared_legend=True

@@ -12,7 +12,10 @@ from typing import Any
 from bench.errors import InputError, require_choice
 from bench.registry import discover
 
-KINDS = {"gyro-free": ("bench.solvers.gyro_free", "GyroFreeSolver")}
+KINDS = {
+    "attitude": ("bench.solvers.attitude", "AttitudeSolver"),
+    "gyro-free": ("bench.solvers.gyro_free", "GyroFreeSolver"),
+}
 
 
 def solvers(kind: str) -> dict[str, type]:

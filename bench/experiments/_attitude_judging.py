@@ -1,0 +1,163 @@
+"""How the attitude experiments judge statements about orders of magnitude: one rule for all curves of a figure."""
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.errors import Array
+from bench.experiment import Verdict
+
+FLOOR = 5e-9  # arcsec (2e-14 rad): below it double precision shows, and not the algorithm
+CERTAIN = 0.95  # of the phases of the quantiser
+HALF = 0.5  # orders; what rounds to the printed number of orders, and what a reader sees in such a figure
+
+
+@dataclass(frozen=True)
+class Band:
+    """What a value in orders of magnitude must be: at least `low`, less than `high`."""
+
+    low: float = -np.inf
+    high: float = np.inf
+
+    def holds(self, value: Array) -> NDArray[np.bool_]:
+        """Return which values are in the band."""
+        return (value >= self.low) & (value < self.high)
+
+
+def printed_orders(low: float, high: float | None = None) -> Band:
+    """Return the band of what rounds to "low to high orders of magnitude"."""
+    return Band(low - HALF, (low if high is None else high) + HALF)
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """One curve of a comparison: an algorithm and an angle.
+
+    Attributes
+    ----------
+    algorithm, angle : str
+    value : ndarray, shape (n,)
+        Orders of magnitude at each rate; NaN where rounding would decide.
+    """
+
+    algorithm: str
+    angle: str
+    value: Array
+
+
+def orders(top: Array, bottom: Array, *, bound: bool = False) -> Array:
+    """Return log10(top/bottom), NaN where one is below the floor; with `bound` only where the larger one is."""
+    shown = np.maximum(top, bottom) if bound else np.minimum(top, bottom)
+    floor = np.finfo(float).tiny
+    return np.where(shown >= FLOOR, np.log10(np.maximum(top, floor) / np.maximum(bottom, floor)), np.nan)
+
+
+def judge(curves: Sequence[Curve], band: Band, rates: Array, *, share: float = 0.5) -> Verdict:
+    """Judge a statement about all curves: true where the value is in the band, at `share` of the rates at least.
+
+    Parameters
+    ----------
+    curves : sequence of Curve
+    band : Band
+    rates : ndarray, shape (n,), Hz
+    share : float
+        1.0 demands every rate, 0.5 most of them.
+    """
+    measured = "; ".join(
+        f"{angle} {spread([c.value for c in group])}"
+        for angle, group in itertools.groupby(sorted(curves, key=lambda c: c.angle), key=lambda c: c.angle)
+    )
+    measured += " orders"
+    passed = {(c.algorithm, c.angle): (band.holds(c.value), ~np.isnan(c.value)) for c in curves}
+    if not all(judged.any() for _, judged in passed.values()):
+        return Verdict("cannot be judged", measured, "rounding decides at every rate")
+    shares = {key: float(true[judged].mean()) for key, (true, judged) in passed.items()}
+    worst = min(shares, key=lambda key: shares[key])
+    true, judged = passed[worst]
+    holds = shares[worst] >= share
+    if len(rates) == 1:
+        failed = [", ".join(key) for key, value in shares.items() if value < 1]
+        reason = f"not for {' / '.join(failed)}" if failed else "true for every algorithm and angle"
+    else:
+        reason = f"true at {(true & judged).sum()} of {judged.sum()} rates"
+        if shares[worst] < 1:
+            reason += f" for {worst[0]}, {worst[1]} (not at {_some(rates[judged & ~true])} Hz)"
+    if judged.sum() < len(rates):
+        reason += f"; at the other {len(rates) - judged.sum()} rounding decides"
+    return Verdict("holds" if holds else "does not hold", measured, reason)
+
+
+def judge_phases(curves: Sequence[Curve], band: Band) -> Verdict:
+    """Judge a statement about quantised runs, of which the phase is not stated.
+
+    Parameters
+    ----------
+    curves : sequence of Curve
+        Their value (phases,) is that of every phase.
+    band : Band
+        Where the statement is true of a phase. It holds if it is in 95 % of the phases on every curve, and does not
+        hold if in 5 % or less on one; in between it cannot be judged.
+    """
+    shares = [float(band.holds(curve.value).mean()) for curve in curves]
+    groups: dict[str, list[float]] = {}
+    for curve, share in zip(curves, shares, strict=True):
+        groups.setdefault(curve.angle, []).append(100 * share)
+    measured = "; ".join(
+        f"{angle}: {min(found):.0f}" + (f" to {max(found):.0f}" if max(found) - min(found) >= 1 else "") + " %"
+        for angle, found in groups.items()
+    )
+    medians = "; ".join(f"{c.algorithm}, {c.angle} {np.median(c.value):.2f}" for c in curves)
+    reason = f"median orders: {medians}"
+    if min(shares) >= CERTAIN:
+        return Verdict("holds", f"{measured} of the phases", reason)
+    if min(shares) <= 1 - CERTAIN + 1e-12:
+        return Verdict("does not hold", f"{measured} of the phases", reason)
+    return Verdict("cannot be judged", f"{measured} of the phases", f"hangs on the phase of the quantiser; {reason}")
+
+
+def _some(rates: Array) -> str:
+    if len(rates) <= 4:
+        return ", ".join(f"{rate:g}" for rate in rates)
+    return f"{len(rates)} rates from {rates[0]:g} to {rates[-1]:g}"
+
+
+def spread(values: Sequence[Array]) -> str:
+    """Return the range of values in orders of magnitude, as text."""
+    together = np.concatenate(values)
+    together = together[~np.isnan(together)]
+    if not len(together):
+        return "at rounding"
+    low, high = together.min(), together.max()
+    low_text, high_text = (f"{value + 0.0:.2f}".replace("-0.00", "0.00") for value in (low, high))
+    return low_text if low_text == high_text else f"{low_text} to {high_text}"
+
+
+def slope(rates: Array, error: Array) -> float:
+    """Return the slope of log error against log rate where rounding does not show; NaN with fewer than 3 points."""
+    shown = error > 10 * FLOOR
+    if shown.sum() < 3:
+        return float("nan")
+    return float(np.polyfit(np.log10(rates[shown]), np.log10(error[shown]), 1)[0])
+
+
+def withhold(verdicts: dict[str, Verdict], reason: str) -> dict[str, Verdict]:
+    """Return the verdicts of a run that is not at the paper's conditions: none, with the measured values kept."""
+    if not reason:
+        return verdicts
+    return {key: Verdict("cannot be judged", verdict.measured, reason) for key, verdict in verdicts.items()}
+
+
+def tally(verdicts: dict[str, Verdict]) -> str:
+    """Return how many claims hold, in words."""
+    count: dict[str, Any] = {
+        word: sum(v.judgement == word for v in verdicts.values())
+        for word in ("holds", "does not hold", "cannot be judged")
+    }
+    return (
+        f"Of {len(verdicts)} claims {count['holds']} hold, {count['does not hold']} do not hold and "
+        f"{count['cannot be judged']} cannot be judged."
+    )
