@@ -12,6 +12,12 @@ from bench.jit import is_compiled
 from bench.output import RunFolder
 
 
+COMPILING = (
+    "Compiling the numerical kernels: the first run of this version takes about 10 s longer, "
+    "or more where there are many solvers."
+)
+
+
 @dataclass
 class Reporter:
     """How a run tells what it does; the default is silent."""
@@ -96,9 +102,7 @@ def run(
     with open_executor(min(jobs, len(items)), scheduler) as executor:
         folder = None if out is None else RunFolder.open(_path(out), inputs_of(chosen, settings, seed), force=force)
         if first_run:
-            reporter.say(
-                "Compiling the numerical kernels: the first run of this version takes about 10 s longer, or more with many solvers."
-            )
+            reporter.say(COMPILING)
         rows = run_campaign(
             chosen.measure,
             items,

@@ -80,8 +80,11 @@ def judge(curves: Sequence[Curve], band: Band, rates: Array, *, share: float = 0
     true, judged = passed[worst]
     holds = shares[worst] >= share
     if len(rates) == 1:
-        failed = [", ".join(key) for key, value in shares.items() if value < 1]
-        reason = f"not for {' / '.join(failed)}" if failed else "true for every algorithm and angle"
+        failed: dict[str, list[str]] = {}
+        for algorithm, angle in (key for key, value in shares.items() if value < 1):
+            failed.setdefault(algorithm, []).append(angle)
+        listed = "; ".join(f"{algorithm} ({', '.join(angles)})" for algorithm, angles in failed.items())
+        reason = f"not for {listed}" if failed else "true for every algorithm and angle"
     else:
         reason = f"true at {(true & judged).sum()} of {judged.sum()} rates"
         if shares[worst] < 1:
@@ -110,8 +113,9 @@ def judge_phases(curves: Sequence[Curve], band: Band) -> Verdict:
         f"{angle}: {min(found):.0f}" + (f" to {max(found):.0f}" if max(found) - min(found) >= 1 else "") + " %"
         for angle, found in groups.items()
     )
-    medians = "; ".join(f"{c.algorithm}, {c.angle} {np.median(c.value):.2f}" for c in curves)
-    reason = f"median orders: {medians}"
+    worst = curves[int(np.argmin(shares))]
+    low, middle, high = (_two_decimals(value) for value in np.percentile(worst.value, [5, 50, 95]))
+    reason = f"{worst.algorithm}, {worst.angle}: median {middle} orders, {low} to {high} in 90 %"
     if min(shares) >= CERTAIN:
         return Verdict("holds", f"{measured} of the phases", reason)
     if min(shares) <= 1 - CERTAIN + 1e-12:
@@ -131,9 +135,13 @@ def spread(values: Sequence[Array]) -> str:
     together = together[~np.isnan(together)]
     if not len(together):
         return "at rounding"
-    low, high = together.min(), together.max()
-    low_text, high_text = (f"{value + 0.0:.2f}".replace("-0.00", "0.00") for value in (low, high))
-    return low_text if low_text == high_text else f"{low_text} to {high_text}"
+    texts = [_two_decimals(value) for value in (together.min(), together.max())]
+    return texts[0] if texts[0] == texts[1] else " to ".join(texts)
+
+
+def _two_decimals(value: float) -> str:
+    text = f"{value:.2f}"
+    return text.removeprefix("-") if float(text) == 0 else text
 
 
 def slope(rates: Array, error: Array) -> float:

@@ -68,13 +68,12 @@ def error_figure(options: Options, seed: int) -> Figure:
 def samples_figure(errors: Errors) -> Figure:
     """Return the largest rotation error against the number of samples, ideal and quantised."""
     place, panels = MEASURES.index("rotation"), []
+    looks = [*((algorithm, *look) for algorithm, look in LOOK.items()), (FULL_QUATERNION, 6, "--"), (HYBRID, 5, "-")]
     for data in ("ideal", "quantised"):
         lines = []
-        for algorithm, colour, style in (
-            *((a, *look) for a, look in LOOK.items()),
-            (FULL_QUATERNION, 6, "--"),
-            (HYBRID, 5, "-"),
-        ):
+        for algorithm, colour, style in looks:
+            if data == "quantised" and not algorithm.quantised:
+                continue
             # For fewer than five samples ten terms are enough.
             labels = [(QUATERNION if algorithm is FULL_QUATERNION and N < 5 else algorithm).label for N in SAMPLES]
             cells = [errors.cells[label, N, data][:, 0, place] for label, N in zip(labels, SAMPLES, strict=True)]

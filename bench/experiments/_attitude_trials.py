@@ -62,7 +62,7 @@ DCM = Algorithm("Taylor DCM", "taylor-dcm", (("terms", 10), ("orthonormalise", F
 # For 3 and 4 samples ten terms are enough.
 FULL_QUATERNION = Algorithm("Taylor quaternion, enough terms", "taylor-quaternion", samples=(5, 6))
 FULL_DCM = Algorithm("Taylor DCM, enough terms", "taylor-dcm", (("orthonormalise", False),), samples=(5, 6))
-HYBRID = Algorithm("hybrid", "hybrid")
+HYBRID = Algorithm("hybrid", "hybrid", quantised=False)
 ITERATION = Algorithm("functional iteration", "functional-iteration", samples=(8,), quantised=False)
 WINDOW = Algorithm("12-sample window", "windowed-taylor", (("window", 12),), samples=(4,), quantised=False)
 
