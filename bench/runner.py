@@ -11,7 +11,6 @@ from bench.experiment import Experiment, Outcome, experiment, inputs_of, version
 from bench.jit import is_compiled
 from bench.output import RunFolder
 
-
 COMPILING = (
     "Compiling the numerical kernels: the first run of this version takes about 10 s longer, "
     "or more where there are many solvers."

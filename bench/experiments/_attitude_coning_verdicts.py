@@ -228,10 +228,11 @@ def summary(verdicts: dict[str, Verdict], errors: Errors) -> str:
         for name in READINGS
         if verdicts[f"1 pitch and roll, {name}"].judgement == verdicts[f"2 yaw, {name}"].judgement == "holds"
     ]
+    which = f" ({', '.join(both)})" if both else ""
     text = (
         f"{tally(verdicts)} Claims 1 and 2 hold together in {len(both)} of {len(READINGS)} readings of "
-        f'"rotation vector"{" (" + ", ".join(both) + ")" if both else ""}. With the printed coefficients (57/80, 33/80) '
-        "it is the same polynomial as in the new algorithms, and the drift about the vertical is the same"
+        f'"rotation vector"{which}. With the printed coefficients (57/80, 33/80) it is the same polynomial as in '
+        "the new algorithms, and the drift about the vertical is the same"
     )
     drift = [errors.cells[a.label, 3, "ideal"][0, 0, 4] for a in (READINGS["Eq. 4"], QUATERNION)]
     return f"{text}: {drift[0]:.4g} and {drift[1]:.4g} arcsec at {errors.rates[0]:g} Hz."

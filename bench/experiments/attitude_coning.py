@@ -8,6 +8,7 @@ for each, quantised ones over many phases of the quantiser.
 from bench.experiment import Claim, Condition, Experiment
 from bench.experiments._attitude_coning_trials import Options, items, measure
 from bench.experiments._attitude_coning_verdicts import evaluate
+from bench.experiments._attitude_judging import FLOOR
 from bench.experiments._attitude_recording import record_coning
 from bench.experiments._attitude_trials import READINGS
 from bench.references import XU
@@ -61,7 +62,7 @@ CONDITIONS = (
 
 ORDERS = (
     '"2 orders" is what rounds to 2: a factor of 10^1.5 to 10^2.5. Holds if so at most of the rates, for both new '
-    "algorithms and each angle; rates at which an error is at rounding (5e-9 arcsec) do not count"
+    f"algorithms and each angle; rates at which an error is at rounding ({FLOOR:g} arcsec) do not count"
 )
 PHASES = (
     "holds if so in 95 % of the phases of the quantiser for each curve, does not hold if in 5 % or less for one; "
