@@ -115,10 +115,10 @@ def test_ctrl_c_keeps_finished_parts_and_the_run_can_be_continued(tmp_path):
     os.killpg(child.pid, signal.SIGINT)  # what a terminal does: the workers get it too
     _, error = child.communicate(timeout=30)
     assert child.returncode == 1
-    assert "of 32 parts are finished and kept in" in error.replace("\n", " ")
+    assert "of 44 parts are finished and kept in" in error.replace("\n", " ")
     assert "Traceback" not in error
     finished = {path: path.stat().st_mtime_ns for path in out.glob("parts/*.parquet")}
-    assert 3 <= len(finished) < 32
+    assert 3 <= len(finished) < 44
     assert not list(out.glob("parts/.*"))
     resumed = subprocess.run(command, capture_output=True, text=True)
     assert resumed.returncode == 0, resumed.stderr
