@@ -65,7 +65,14 @@ def _by_axis(truth: Kinematics, estimates: Mapping[str, GyroFreeSolution]) -> li
     lines = _lines(estimates)
     traces = []
     for k, axis in enumerate(AXES):
-        traces.append(Trace(f"error/attitude_{axis}", f"Attitude error about {axis}, deg", *lines, attitude[:, k]))
+        traces.append(
+            Trace(
+                f"error/attitude_{axis}",
+                f"Attitude error about {axis} of i (rotation vector), deg",
+                *lines,
+                attitude[:, k],
+            )
+        )
         traces.append(Trace(f"error/position_{axis}", f"Position error along {axis}, m", *lines, position[:, k]))
     return traces
 
