@@ -12,6 +12,7 @@ import mpmath
 import numpy as np
 import pytest
 
+import bench
 from bench.errors import AccuracyError, BenchWarning, InputError
 from bench.motion.body_rate import BodyRate
 from bench.motion.coning import Coning
@@ -426,3 +427,28 @@ def test_bad_options_are_named(make, message):
 )
 def test_orders_are_declared(solver, orders):
     assert (solver.order_periodic, solver.order_drift) == orders
+
+
+@pytest.mark.parametrize(
+    ("name", "turn"), [("taylor-dcm", 13.0), ("taylor-quaternion", 30.0), ("windowed-taylor", 90.0)]
+)
+def test_an_update_that_turns_too_far_for_a_power_series_is_refused(name, turn):
+    """exp(S) roundings: the terms of the series grow before they cancel, and no number of them helps."""
+    solver = bench.solver("attitude", name, samples=2)
+    with pytest.raises(AccuracyError, match="turns too far for a power series"):
+        solver.solve(np.tile([turn * 1.5, 0.0, 0.0], (24, 1)), 0.01, [1, 0, 0, 0])
+
+
+def test_rounding_of_a_far_turn_is_warned_of():
+    with pytest.warns(BenchWarning, match=r"rounding of the series may reach .* rad in an update: take fewer samples"):
+        bench.solver("attitude", "taylor-dcm", samples=1).solve(np.tile([20.0, 0, 0], (3, 1)), 0.01, [1, 0, 0, 0])
+
+
+def test_a_state_belongs_to_its_solver_and_an_empty_chunk_changes_nothing():
+    three, four = (bench.solver("attitude", "taylor-quaternion", samples=n) for n in (3, 4))
+    state = three.start(0.01, [1, 0, 0, 0])
+    with pytest.raises(InputError, match=r"state must come from start or advance of TaylorQuaternion\(samples=4"):
+        four.advance(state, np.zeros((4, 3)))
+    same, rows = three.advance(state, np.empty((0, 3)))
+    assert same is state
+    assert rows.shape == (0, 4)

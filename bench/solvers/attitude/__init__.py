@@ -33,6 +33,8 @@ class AttitudeState:
 
     Attributes
     ----------
+    solver : AttitudeSolver
+        Whose state it is: no other can go on with it.
     constants : tuple
         What the solver computed from its options.
     dt : float, s
@@ -46,6 +48,7 @@ class AttitudeState:
         The running attitude as the solver keeps it (see `AttitudeSolver._carry`); never written in place.
     """
 
+    solver: "AttitudeSolver"
     constants: tuple[Any, ...]
     dt: float
     kept: Array
@@ -145,7 +148,7 @@ class AttitudeSolver(ABC):
         """
         dt = require_scalar("dt", dt, positive=True)
         q0 = require_unit_quaternion("q0", q0)
-        return AttitudeState(self._constants(), dt, np.empty((0, 3)), 0, 0, self._carry(q0))
+        return AttitudeState(self, self._constants(), dt, np.empty((0, 3)), 0, 0, self._carry(q0))
 
     @final
     def advance(self, state: AttitudeState, dtheta_b: ArrayLike) -> tuple[AttitudeState, Array]:
@@ -164,6 +167,9 @@ class AttitudeSolver(ABC):
         AccuracyError
             If the attitude is no longer finite.
         """
+        self._require_own(state)
+        if np.shape(dtheta_b) == (0, 3):  # a live stream has such chunks
+            return state, np.empty((0, 4))
         chunk = require_array("dtheta_b", dtheta_b, (None, 3))
         if len(state.kept):
             chunk = np.concatenate([state.kept, chunk])
@@ -181,6 +187,11 @@ class AttitudeSolver(ABC):
         if total := state.first + len(state.kept):
             self._check_length(total)
         return self._advance(state, state.kept, last=True)[1]
+
+    def _require_own(self, state: AttitudeState) -> None:
+        if not isinstance(state, AttitudeState) or state.solver != self:
+            owner = getattr(state, "solver", state)
+            raise InputError(f"state must come from start or advance of {self!r}, got that of {owner!r}")
 
     @final
     def solve(self, dtheta_b: ArrayLike, dt: float, q0: ArrayLike, chunk: int = 16384) -> Array:
@@ -242,6 +253,7 @@ class AttitudeSolver(ABC):
         The block begins with the increment `state.first`; update k is written to rows[k] if rows are given.
         """
         N, W, (before, _) = self.samples, self._window, self.borrowed
+        self._require_own(state)
         total = state.first + len(block)
         # A window starts `before` increments ahead of its update, but not before the stream.
         ready = total // N if last else 0 if total < W else (total - W + before) // N + 1

@@ -15,6 +15,7 @@ from bench.errors import AccuracyError, Array, BenchWarning, InputError, require
 MOST_TERMS = 300
 LOOKED_AT = 500  # terms, in the estimate of what is left out
 TOLERANCE = 1e-10  # rad per update
+GARBAGE = 1e-3  # rad per update
 
 
 def require_terms(terms: int | None) -> None:
@@ -53,12 +54,12 @@ def warn_if_truncated(name: str, terms: int, squares: Array, share: float, angle
     Returns
     -------
     bool
-        Whether it warned.
+        Whether it warned: of terms left out, or of rounding where an update turns too far for a power series.
 
     Raises
     ------
     AccuracyError
-        If a square is not finite.
+        If a square is not finite, or rounding may exceed 1e-3 rad in an update.
     """
     from bench.solvers.attitude._taylor_kernels import neglected
 
@@ -67,13 +68,30 @@ def warn_if_truncated(name: str, terms: int, squares: Array, share: float, angle
     sizes = np.sqrt(squares)
     bound, needed = neglected(sizes, share, terms, TOLERANCE / angle, LOOKED_AT)
     if angle * bound <= TOLERANCE:
-        return False
+        return _warn_if_far(name, sizes[0], share, angle)
+    reach = angle * bound if angle * bound < np.pi else np.pi  # also where the bound overflows
     enough = f"more than {LOOKED_AT}" if needed == LOOKED_AT else f"about {needed}"
     warnings.warn(
         f"{name}: terms = {terms} is too low for these increments: what is left out may reach "
-        f"{min(angle * bound, np.pi):.1g} rad in an update; {enough} terms are needed for {TOLERANCE:g} rad "
+        f"{reach:.1g} rad in an update; {enough} terms are needed for {TOLERANCE:g} rad "
         f"(sum |w_m| = {sizes.sum():.3g} rad)",
         BenchWarning,
         stacklevel=5,  # the caller of `solve` or `advance`
+    )
+    return True
+
+
+def _warn_if_far(name: str, turn: float, share: float, angle: float) -> bool:
+    """Warn of rounding: the terms of the series grow to exp(share |w_0|) before they cancel."""
+    rounding = angle * np.finfo(float).eps * math.exp(min(share * turn, 700.0))
+    if rounding > GARBAGE:
+        raise AccuracyError(f"{name}: an update turns too far for a power series, |w_0| = {turn:.3g} rad")
+    if rounding <= TOLERANCE:
+        return False
+    warnings.warn(
+        f"{name}: an update turns by about {turn:.3g} rad, so far that rounding of the series may reach "
+        f"{rounding:.1g} rad in an update: take fewer samples per update",
+        BenchWarning,
+        stacklevel=6,
     )
     return True
