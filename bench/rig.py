@@ -7,7 +7,6 @@ sensors. Nothing is stepped, so nothing accumulates. The only file that imports
 mujoco for sensing.
 """
 
-import os
 import queue
 import threading
 from collections import deque
@@ -20,6 +19,7 @@ import mujoco
 import numpy as np
 from mujoco.batch import Batch
 
+from bench.campaign import cpu_count
 from bench.errors import (
     Array,
     Indices,
@@ -88,9 +88,7 @@ class Rig:
     def __init__(self, model: mujoco.MjModel, *, threads: int | None = None):
         self.model = model  # the whole model as drawn, for recordings
         self._instrument = instrument(model)
-        self._threads = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-        if threads is not None:
-            self._threads = require_integer("threads", threads, minimum=1)
+        self._threads = cpu_count() if threads is None else require_integer("threads", threads, minimum=1)
         self._prepare()
 
     def _prepare(self) -> None:
