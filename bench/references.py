@@ -105,3 +105,8 @@ WU_YAN = Source(
     "Wu Y., Yan G.: Attitude reconstruction from inertial measurements: QuatFIter and its comparison with RodFIter, "
     "IEEE Trans. Aerospace and Electronic Systems 55(6), 3629-3639, 2019",
 )
+WGS84_REPORT = Source(
+    "WGS84",
+    "National Imagery and Mapping Agency: Department of Defense World Geodetic System 1984, TR8350.2, 3rd edition, "
+    "amendment 1, 2000",
+)

@@ -8,9 +8,9 @@ import numpy as np
 
 from bench.errors import Array, require_array
 from bench.motion import STANDARD, Motion
+from bench.motion._euler_rates import Jet, euler_rates
 from bench.motion._options import ORIGIN, STILL, Vector, as_vector, set_options
-from bench.motion._waves import columns, sincos
-from bench.rotation import quat_from_euler
+from bench.motion._waves import sincos
 from bench.signals import Kinematics
 from bench.units import DEG
 
@@ -54,7 +54,7 @@ class EulerSwing(Motion):
         vectors = ("amplitude", "angular_frequency", "phase", "offset", "velocity", "position", "gravity")
         set_options(self, **{name: as_vector(name, getattr(self, name)) for name in vectors})
 
-    def _angle(self, k: int, t: Array) -> tuple[Array, Array, Array]:
+    def _angle(self, k: int, t: Array) -> Jet:
         """Return angle k of (psi, P, R) and its first two derivatives, each shape (n,)."""
         amplitude, w = self.amplitude[k], self.angular_frequency[k]
         sine, cosine = sincos(w, t, self.phase[k])
@@ -63,21 +63,13 @@ class EulerSwing(Motion):
     def kinematics(self, t: Array) -> Kinematics:
         """Return the true kinematics at times t, shape (n,), s."""
         t = require_array("t", t, (None,))
-        (psi, dpsi, ddpsi), (P, dP, ddP), (R, dR, ddR) = (self._angle(k, t) for k in range(3))
-        sP, cP, sR, cR = np.sin(P), np.cos(P), np.sin(R), np.cos(R)
-        level = cP * dpsi  # rate of the yaw axis across the roll axis, and its derivative
-        dlevel = cP * ddpsi - sP * dP * dpsi
-        wx, wz = cR * dP - sR * level, sR * dP + cR * level
+        q_ib, omega_ib_b, alpha_ib_b = euler_rates(*(self._angle(k, t) for k in range(3)))
         return Kinematics(
             position=np.array(self.position) + t[:, None] * np.array(self.velocity),
             velocity=np.array(self.velocity),
             acceleration=STILL,
-            q_ib=quat_from_euler(psi, P, R),
-            omega_ib_b=columns(wx, dR + sP * dpsi, wz),
-            alpha_ib_b=columns(
-                cR * ddP - sR * dlevel - dR * wz,
-                ddR + sP * ddpsi + cP * dP * dpsi,
-                sR * ddP + cR * dlevel + dR * wx,
-            ),
+            q_ib=q_ib,
+            omega_ib_b=omega_ib_b,
+            alpha_ib_b=alpha_ib_b,
             gravity=np.array(self.gravity),
         )

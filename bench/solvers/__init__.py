@@ -15,6 +15,7 @@ from bench.registry import discover
 KINDS = {
     "attitude": ("bench.solvers.attitude", "AttitudeSolver"),
     "gyro-free": ("bench.solvers.gyro_free", "GyroFreeSolver"),
+    "navigation": ("bench.solvers.navigation", "NavigationSolver"),
 }
 
 
