@@ -7,13 +7,17 @@ estimate, and through an evaluation to become evidence::
     motion -> rig (MuJoCo) -> imu errors -> solver -> evaluation -> result -> record / report
 
 Frames
-    i inertial (MuJoCo's world), e Earth-fixed, n navigation (east, north, up),
+    i inertial (MuJoCo's world), e Earth-fixed (i and e agree at t = 0), n navigation (east, north, up),
     b body (x right, y forward, z up). Superscript frame last: ``omega_ib_b`` is the
     rate of b relative to i, in b-components.
 Attitude
     ``q_nb`` and ``C_nb`` take b-components to n-components. Quaternions are Hamilton,
     wxyz. Euler angles: yaw psi about z (anticlockwise, zero when body y points north),
     pitch P about x, roll R about y, ``C_nb = Rz(psi) Rx(P) Ry(R)``.
+Earth
+    Models are frozen (`WGS84`, others in ``bench.earth``). Navigation solvers are told a `NavigationInitial` and give a
+    `Trajectory`; what they know of the Earth is the model that they are given. Gravitation is the attraction alone,
+    gravity includes the centrifugal part.
 Units
     SI and radians. Any other unit is in the name (``half_angle_deg``).
 Arrays
@@ -28,6 +32,7 @@ Seeds
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from bench.earth import WGS84, Earth
 from bench.errors import (
     AccuracyError,
     BenchError,
@@ -38,6 +43,7 @@ from bench.errors import (
 )
 from bench.motion import Motion
 from bench.signals import Accelerometers, GyroFreeSolution, Increments, Initial, Kinematics, Readings
+from bench.trajectory import NavigationErrors, NavigationInitial, Trajectory, navigation_errors
 
 if TYPE_CHECKING:
     from bench.rig import Rig
@@ -50,20 +56,26 @@ __version__ = "0.1.0"
 _LAZY = {"Rig": "bench.rig", "solver": "bench.solvers", "run": "bench.runner"}
 
 __all__ = [
+    "WGS84",
     "Accelerometers",
     "AccuracyError",
     "BenchError",
+    "Earth",
     "GyroFreeSolution",
     "Increments",
     "Initial",
     "InputError",
     "Kinematics",
     "Motion",
+    "NavigationErrors",
+    "NavigationInitial",
     "ObservabilityError",
     "OutputError",
     "Readings",
     "Rig",
+    "Trajectory",
     "UnknownNameError",
+    "navigation_errors",
     "run",
     "solver",
 ]
