@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bench.earth import Earth
+from bench.earth import Earth, require_latitude
 from bench.errors import Array, InputError, require_array, require_scalar, require_unit_quaternion
 from bench.rotation import cross, quat_conjugate, quat_multiply, quat_normalize, quat_rotate
 from bench.signals import Kinematics
@@ -52,9 +52,7 @@ class NavigationInitial:
         longitude: float,
         height: float = 0.0,
     ):
-        latitude = require_scalar("latitude", latitude)
-        if abs(latitude) > np.pi / 2:
-            raise InputError(f"latitude must be within +-pi/2 rad, got {latitude!r} (degrees?)")
+        latitude = float(require_latitude(require_scalar("latitude", latitude)))
         longitude = require_scalar("longitude", longitude)
         if abs(longitude) > 2 * np.pi:
             raise InputError(f"longitude must be within +-2 pi rad, got {longitude!r} (degrees?)")
@@ -94,6 +92,8 @@ class Trajectory:
     r_e: Array
 
     def __post_init__(self) -> None:
+        if not isinstance(self.earth, Earth):
+            raise InputError(f"earth must be an Earth, got {self.earth!r}")
         t = require_array("t", self.t, (None,))
         object.__setattr__(self, "t", t)
         object.__setattr__(self, "q_eb", require_unit_quaternion("q_eb", self.q_eb, (len(t), 4)))
@@ -105,8 +105,15 @@ class Trajectory:
 
     @classmethod
     def of(cls, truth: Kinematics, t: ArrayLike, earth: Earth) -> "Trajectory":
-        """Return the trajectory of true kinematics in the inertial frame that agrees with e at t = 0."""
+        """Return the trajectory of true kinematics in the inertial frame that agrees with e at t = 0.
+
+        Raises
+        ------
+        InputError
+            If there are not as many rows as times, or one row that is meant for all.
+        """
         t = require_array("t", t, (None,))
+        truth = truth.repeated(len(t))
         q_ei = quat_conjugate(earth.q_ie(t))
         r_e = quat_rotate(q_ei, truth.position)
         v_e = quat_rotate(q_ei, truth.velocity) - cross(earth.omega_ie, r_e)
@@ -129,8 +136,6 @@ class Trajectory:
             require_array(name, value, (len(t),))
             for name, value in (("latitude", latitude), ("longitude", longitude), ("height", height))
         )
-        if np.abs(latitude).max() > np.pi / 2:
-            raise InputError(f"latitude must be within +-pi/2 rad, got {np.abs(latitude).max()!r} (degrees?)")
         q_en = earth.q_en(latitude, longitude)
         q_eb = quat_normalize(quat_multiply(q_en, require_unit_quaternion("q_nb", q_nb, (len(t), 4))))
         v_e = quat_rotate(q_en, require_array("v_n", v_n, (len(t), 3)))

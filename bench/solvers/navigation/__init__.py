@@ -178,7 +178,8 @@ class NavigationSolver(ABC):
         if len(state.kept):
             block = np.concatenate([state.kept, block])
         done = state.updates
-        state, out = self._advance(state, block)
+        out = np.empty((len(block) // self.samples, COLUMNS))
+        state, _ = self._advance(state, block, out)
         if not len(out):
             return state, None
         t = (done + 1 + np.arange(len(out))) * (self.samples * state.dt)
@@ -223,26 +224,30 @@ class NavigationSolver(ABC):
         """
         chunk = require_integer("chunk", chunk, minimum=1)
         state = self.start(dt, initial, earth)
-        dtheta = require_array("dtheta_b", dtheta_b, (None, 3))
-        dvel = require_array("dvel_b", dvel_b, (len(dtheta), 3))
+        dtheta = require_array("dtheta_b", dtheta_b, (None, 3), finite=False)
+        dvel = require_array("dvel_b", dvel_b, (len(dtheta), 3), finite=False)
         n, N = len(dtheta), self.samples
         if n % N:
             raise InputError(f"dtheta_b must have a multiple of samples = {N} increments, got {n}")
-        out = np.empty((n // N + 1, COLUMNS))
-        out[0] = _first_row(initial, earth)
-        step = max(chunk // N, 1) * N
+        step = min(max(chunk // N, 1) * N, n)
+        # The two buffers stay in the processor's cache; only what is returned is written to fresh memory.
+        buffer, out = np.empty((step, 6)), np.empty((step // N, COLUMNS))
+        columns = [np.empty((n // N + 1, width)) for width in (4, 3, 3)]
+        _scatter(_first_row(initial, earth)[None], columns, 0)
         for begin in range(0, n, step):
-            block = np.concatenate([dtheta[begin : begin + step], dvel[begin : begin + step]], axis=1)
-            state, _ = self._advance(state, block, rows=out[1:])
-        return _trajectory(earth, np.arange(n // N + 1) * (N * state.dt), out)
+            block = buffer[: min(step, n - begin)]
+            block[:, :3], block[:, 3:] = dtheta[begin : begin + step], dvel[begin : begin + step]
+            if not np.isfinite(block).all():  # say where
+                require_array("dtheta_b", dtheta, (None, 3))
+                require_array("dvel_b", dvel, (None, 3))
+            state, rows = self._advance(state, block, out[: len(block) // N])
+            _scatter(rows, columns, begin // N + 1)
+        return Trajectory(earth, np.arange(n // N + 1) * (N * state.dt), *columns)
 
-    def _advance(
-        self, state: NavigationState, block: Array, rows: Array | None = None
-    ) -> tuple[NavigationState, Array]:
-        """Do all updates that the block fills; update k is written to rows[k] if rows are given."""
+    def _advance(self, state: NavigationState, block: Array, out: Array) -> tuple[NavigationState, Array]:
+        """Do all updates that the block fills and write them to out."""
         N, done = self.samples, state.updates
-        count = len(block) // N
-        out = np.empty((count, COLUMNS)) if rows is None else rows[done : done + count]
+        count = len(out)
         carry = state.carry
         if count:
             carry = carry.copy()
@@ -268,6 +273,13 @@ def _first_row(initial: NavigationInitial, earth: Earth) -> Array:
     q_eb = quat_multiply(q_en, initial.q_nb)
     r_e = earth.position(initial.latitude, initial.longitude, initial.height)
     return np.concatenate([q_eb / np.linalg.norm(q_eb), quat_rotate(q_en, initial.v_n), r_e])
+
+
+def _scatter(rows: Array, columns: list[Array], begin: int) -> None:
+    first = 0
+    for column in columns:
+        column[begin : begin + len(rows)] = rows[:, first : first + column.shape[1]]
+        first += column.shape[1]
 
 
 def _trajectory(earth: Earth, t: Array, out: Array) -> Trajectory:
