@@ -61,7 +61,9 @@ def gravitation(r):
     r2 = x * x + y * y + z * z
     k, ratio = mp.mpf(3) / 2 * J2 * A * A / r2, z * z / r2
     scale = -GM / r2 ** mp.mpf("1.5")
-    return mp.matrix([x * (1 + k * (1 - 5 * ratio)), y * (1 + k * (1 - 5 * ratio)), z * (1 + k * (3 - 5 * ratio))]) * scale
+    return (
+        mp.matrix([x * (1 + k * (1 - 5 * ratio)), y * (1 + k * (1 - 5 * ratio)), z * (1 + k * (3 - 5 * ratio))]) * scale
+    )
 
 
 def derivative(function, t, order):

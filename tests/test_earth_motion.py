@@ -1,5 +1,5 @@
-"""Motions on the rotating Earth in closed form: MuJoCo's readings and all kinematics against 40-digit derivatives of the
-geodetic path and the attitude matrices (tests/earth_motion_reference.py), at 7 km/s, over poles and after an hour.
+"""Motions on the rotating Earth in closed form: MuJoCo's readings and all kinematics against 40-digit derivatives of
+the geodetic path and the attitude matrices (tests/earth_motion_reference.py), at 7 km/s, over poles, after an hour.
 """
 
 import math
@@ -198,7 +198,7 @@ def test_navigation_initial_is_the_place_and_the_motion_there():
 
 
 def test_great_circle_leads_over_the_pole():
-    """From 89 deg north at 300 m/s the pole comes after 373 s; the longitude then jumps by pi, the attitude does not."""
+    """From 89 deg at 300 m/s the pole comes after 373 s; the longitude jumps by pi there, the attitude does not."""
     motion = GreatCircle()
     tr = motion.trajectory(np.linspace(0.0, 740.0, 3001))
     k = int(np.argmax(tr.latitude))
@@ -219,7 +219,7 @@ def test_motions_on_the_earth_are_values():
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: EarthRest(latitude=45.0), r"latitude must be within \+-pi/2 rad, got 45.0 \(degrees\?\)"),
+        (lambda: EarthRest(latitude=45.0), r"latitude must be within \+-pi/2 rad, got 45 \(degrees\?\)"),
         (lambda: EarthRest(longitude=126.0), r"longitude must be within \+-2 pi rad, got 126.0"),
         (lambda: EarthRest(height=math.nan), "height must be finite"),
         (lambda: EarthRest(earth="wgs84"), "earth must be an Earth, got 'wgs84'"),

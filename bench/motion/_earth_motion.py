@@ -11,7 +11,6 @@ from bench.errors import Array, require_array
 from bench.motion import Motion
 from bench.motion._euler_rates import Jet
 from bench.motion._waves import columns
-from bench.rotation import cross, quat_conjugate, quat_multiply, quat_normalize, quat_rotate
 from bench.signals import Kinematics
 from bench.trajectory import NavigationInitial, Trajectory
 
@@ -52,21 +51,13 @@ class EarthMotion(Motion):
     @final
     def kinematics(self, t: Array) -> Kinematics:
         """Return the true kinematics in i at times t, shape (n,), s: Coriolis and centrifugal terms in closed form."""
+        from bench.motion._earth_motion_kernels import inertial
+
         t = require_array("t", t, (None,))
         now = self.earth_fixed(t)
-        q_ie, omega_e = self.earth.q_ie(t), self.earth.omega_ie
-        turning = cross(omega_e, now.r_e)
-        acceleration = now.a_e + 2 * cross(omega_e, now.v_e) + cross(omega_e, turning)
-        omega_ie_b = quat_rotate(quat_conjugate(now.q_eb), omega_e)
-        return Kinematics(
-            position=quat_rotate(q_ie, now.r_e),
-            velocity=quat_rotate(q_ie, now.v_e + turning),
-            acceleration=quat_rotate(q_ie, acceleration),
-            q_ib=quat_normalize(quat_multiply(q_ie, now.q_eb)),
-            omega_ib_b=now.omega_eb_b + omega_ie_b,
-            alpha_ib_b=now.alpha_eb_b - cross(now.omega_eb_b, omega_ie_b),
-            gravity=quat_rotate(q_ie, self.earth.gravitation(now.r_e)),
-        )
+        motion = now.q_eb, now.omega_eb_b, now.alpha_eb_b, now.r_e, now.v_e, now.a_e
+        G_e = self.earth.gravitation(now.r_e)
+        return Kinematics(*inertial(self.earth.rate, self.earth.q_ie(t), *motion, G_e))
 
     @final
     def trajectory(self, t: Array) -> Trajectory:
@@ -86,28 +77,23 @@ def from_geodetic(
 ) -> EarthFixed:
     """Return the Earth-fixed motion of a geodetic path (rad, m, with derivatives) and an attitude relative to n.
 
-    v_n = [(R_N + h) cosL lambda', (R_M + h) L', h'], a_n = v_n' + omega_en x v_n, omega_en = [-L', lambda' cosL,
-    lambda' sinL]. Not for paths through a pole, where the longitude jumps.
+    Not for paths through a pole, where the longitude jumps.
     """
-    (L, dL, ddL), (lon, dlon, ddlon), (h, dh, ddh) = latitude, longitude, height
-    s, c = np.sin(L), np.cos(L)
-    R_M, R_N = earth.radii(L)
-    # d(R_N cosL)/dL = -R_M sinL, and dR_M/dL = 3 R_M e^2 sinL cosL / (1 - e^2 sin^2 L).
-    e2 = earth.eccentricity_squared
-    dR_M = 3 * R_M * e2 * s * c / (1 - e2 * s * s) * dL
-    arm, darm = (R_N + h) * c, -(R_M + h) * s * dL + dh * c
-    v_n = columns(arm * dlon, (R_M + h) * dL, dh)
-    dv_n = columns(darm * dlon + arm * ddlon, (dR_M + dh) * dL + (R_M + h) * ddL, ddh)
-    omega_en = columns(-dL, dlon * c, dlon * s)
-    domega_en = columns(-ddL, ddlon * c - dlon * s * dL, ddlon * s + dlon * c * dL)
-    q_en = earth.q_en(L, lon)
-    q_bn = quat_conjugate(q_nb)
-    omega_en_b = quat_rotate(q_bn, omega_en)
-    return EarthFixed(
-        r_e=earth.position(L, lon, h),
-        v_e=quat_rotate(q_en, v_n),
-        a_e=quat_rotate(q_en, dv_n + cross(omega_en, v_n)),
-        q_eb=quat_normalize(quat_multiply(q_en, q_nb)),
-        omega_eb_b=omega_nb_b + omega_en_b,
-        alpha_eb_b=alpha_nb_b + quat_rotate(q_bn, domega_en) - cross(omega_nb_b, omega_en_b),
-    )
+    from bench.motion._earth_motion_kernels import from_geodetic
+
+    path = columns(*latitude, *longitude, *height)
+    r_e = earth.position(latitude[0], longitude[0], height[0])
+    return EarthFixed(r_e, *from_geodetic(earth.parameters, path, q_nb, omega_nb_b, alpha_nb_b))
+
+
+def from_velocity(
+    earth: Earth, place: Array, v_n: Array, dv_n: Array, q_nb: Array, omega_nb_b: Array, alpha_nb_b: Array
+) -> EarthFixed:
+    """Return the Earth-fixed motion of places (latitude, longitude, height) passed with v_n and v_n' (m/s, m/s^2).
+
+    Not for paths through a pole.
+    """
+    from bench.motion._earth_motion_kernels import from_velocity
+
+    r_e = earth.position(*place.T)
+    return EarthFixed(r_e, *from_velocity(earth.parameters, place, v_n, dv_n, q_nb, omega_nb_b, alpha_nb_b))

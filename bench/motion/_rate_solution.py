@@ -7,40 +7,20 @@ angle turned through), all segments at once. The segments are then chained by a
 scan of depth log2(m), so that few roundings enter any knot.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from bench.errors import AccuracyError, Array, require_array
+from bench.errors import AccuracyError, Array
+from bench.motion._chebyshev import DEGREE, EPS, FIT, INTEGRAL, Function, evaluate_segments, sample
 from bench.rotation import quat_conjugate, quat_multiply, quat_normalize
 
-Rate = Callable[[Array], Array]
-
-DEGREE = 24
 LARGEST_ANGLE = 1.0  # rad turned within a segment: the iteration converges in about 14 rounds
 LARGEST_ROUNDS = 30
 SHORTEST = 2.0**-40  # of the span; a rate that still needs shorter segments has a jump
 LARGEST_COUNT = 65536  # of segments beyond four times the first ones; a rate that needs more is noise
 NEGLIGIBLE_ANGLE = 2.0**-56  # rad; what a segment may leave unresolved whatever its rate
-EPS = float(np.finfo(float).eps)
-
-NODES = -np.cos(np.pi * np.arange(DEGREE + 1) / DEGREE)
-NODES[DEGREE // 2] = 0.0
-
-
-def _matrices() -> tuple[Array, Array, Array]:
-    """Return the matrices values -> coefficients, values -> derivative, values -> integral from -1."""
-    k = np.arange(DEGREE + 1)
-    ends = np.where((k == 0) | (k == DEGREE), 0.5, 1.0)
-    fit = (2 / DEGREE) * ends[:, None] * ends * np.cos(np.pi * np.outer(k, DEGREE - k) / DEGREE)
-    derivative = chebyshev.chebvander(NODES, DEGREE - 1) @ chebyshev.chebder(fit)
-    integral = chebyshev.chebvander(NODES, DEGREE + 1) @ chebyshev.chebint(fit, lbnd=-1)
-    return fit, derivative, integral
-
-
-FIT, DERIVATIVE, INTEGRAL = _matrices()
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,24 +43,16 @@ class RateSolution:
     acceleration: Array
     error_estimate: float
 
-    def _evaluate(self, coefficients: Array, t: Array) -> Array:
-        from bench.motion._rate_kernels import evaluate
-
-        segment = np.searchsorted(self.breaks[1:-1], t, side="right")
-        out = np.empty((len(t), 4))
-        evaluate(self.breaks, coefficients, segment, t, out)
-        return out
-
     def q_ib(self, t: Array) -> Array:
         """Return the attitude at times t, shape (n, 4)."""
-        return quat_normalize(self._evaluate(self.attitude, t))
+        return quat_normalize(evaluate_segments(self.breaks, self.attitude, t))
 
     def alpha_ib_b(self, t: Array) -> Array:
         """Return the derivative of the fitted rate at times t, shape (n, 3), rad/s^2."""
-        return self._evaluate(self.acceleration, t)[:, 1:]
+        return evaluate_segments(self.breaks, self.acceleration, t)[:, 1:]
 
 
-def solve(rate: Rate, span: tuple[float, float], q_ib: Array, longest: float) -> RateSolution:
+def solve(rate: Function, span: tuple[float, float], q_ib: Array, longest: float) -> RateSolution:
     """Return the attitude over the span from q_ib at its start.
 
     Raises
@@ -96,7 +68,7 @@ def solve(rate: Rate, span: tuple[float, float], q_ib: Array, longest: float) ->
     attitude = FIT @ quat_multiply(starts[:-1, None], steps)
 
     halved = np.sort(np.concatenate([breaks, breaks[:-1] + 0.5 * np.diff(breaks)]))
-    finer = _chain(q_ib, _steps(_sample(rate, halved[:-1], halved[1:])[0], np.diff(halved))[:, -1])
+    finer = _chain(q_ib, _steps(sample("rate(t)", rate, halved[:-1], halved[1:])[0], np.diff(halved))[:, -1])
     coarser = np.empty_like(finer)
     coarser[::2] = starts
     coarser[1::2] = quat_multiply(starts[:-1], quat_normalize(steps[:, DEGREE // 2]))
@@ -104,19 +76,7 @@ def solve(rate: Rate, span: tuple[float, float], q_ib: Array, longest: float) ->
     return RateSolution(breaks, attitude, _acceleration(values, np.diff(breaks)), float(difference.max()))
 
 
-def _sample(rate: Rate, start: Array, end: Array) -> tuple[Array, Array]:
-    """Return the rate at the nodes of each segment, shape (m, DEGREE + 1, 3), and its derivative in x there."""
-    length = (end - start)[:, None]
-    t = np.clip(start[:, None] + length * (0.5 + 0.5 * NODES), start[:, None], end[:, None])
-    flat = t.ravel()
-    values = require_array("rate(t)", rate(flat), (len(flat), 3)).reshape(*t.shape, 3)
-    derivative = DERIVATIVE @ values
-    # The times are rounded, which matters once t is large beside the segment: go back to the exact nodes.
-    off = NODES - ((t - start[:, None]) - (end[:, None] - t)) / length
-    return values + off[:, :, None] * derivative, derivative
-
-
-def _segments(rate: Rate, span: tuple[float, float], longest: float) -> tuple[Array, Array]:
+def _segments(rate: Function, span: tuple[float, float], longest: float) -> tuple[Array, Array]:
     """Return breaks (m + 1,) and the rate at the nodes (m, DEGREE + 1, 3) of segments that resolve it."""
     pieces = int(np.ceil((span[1] - span[0]) / longest))
     breaks = span[0] + (span[1] - span[0]) * (np.arange(pieces + 1) / pieces)
@@ -124,7 +84,7 @@ def _segments(rate: Rate, span: tuple[float, float], longest: float) -> tuple[Ar
     start, end = breaks[:-1], breaks[1:]
     starts, resolved = [], []
     while len(start):
-        values, derivative = _sample(rate, start, end)
+        values, derivative = sample("rate(t)", rate, start, end)
         length = end - start
         largest = np.abs(values).max(axis=(1, 2))
         tail = np.abs(FIT[-3:] @ values).max(axis=(1, 2))

@@ -8,9 +8,8 @@ import numpy as np
 
 from bench.errors import Array, require_array
 from bench.motion import STANDARD, Motion
-from bench.motion._euler_rates import Jet, euler_rates
+from bench.motion._euler_rates import Jet, euler_rates, harmonic
 from bench.motion._options import ORIGIN, STILL, Vector, as_vector, set_options
-from bench.motion._waves import sincos
 from bench.signals import Kinematics
 from bench.units import DEG
 
@@ -56,9 +55,7 @@ class EulerSwing(Motion):
 
     def _angle(self, k: int, t: Array) -> Jet:
         """Return angle k of (psi, P, R) and its first two derivatives, each shape (n,)."""
-        amplitude, w = self.amplitude[k], self.angular_frequency[k]
-        sine, cosine = sincos(w, t, self.phase[k])
-        return self.offset[k] + amplitude * sine, (amplitude * w) * cosine, (-amplitude * w * w) * sine
+        return harmonic(self.amplitude[k], self.angular_frequency[k], self.phase[k], t, self.offset[k])
 
     def kinematics(self, t: Array) -> Kinematics:
         """Return the true kinematics at times t, shape (n,), s."""

@@ -4,14 +4,12 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-import numpy as np
-
 from bench.earth import WGS84, Earth
-from bench.errors import Array, InputError, require_array, require_scalar
+from bench.errors import Array, require_array, require_scalar
 from bench.motion._earth_motion import EarthFixed, EarthMotion, from_geodetic
-from bench.motion._euler_rates import Jet, euler_rates
-from bench.motion._options import Vector, as_vector, set_options
-from bench.motion._waves import sincos
+from bench.motion._earth_options import check_off_poles, check_place
+from bench.motion._euler_rates import SWING_OPTIONS, Jet, harmonic, set_vectors, swing_rates
+from bench.motion._options import Vector
 from bench.references import WANG, Source
 from bench.units import DEG
 
@@ -69,14 +67,10 @@ class FastVehicle(EarthMotion):
     earth: Earth = WGS84
 
     def __post_init__(self) -> None:
-        if abs(require_scalar("latitude", self.latitude)) >= math.pi / 2:
-            raise InputError(f"latitude must be within +-pi/2 rad, got {self.latitude!r} (degrees?)")
-        for name in ("speed", "azimuth", "longitude", "height", "climb"):
+        check_place(self.earth, self.latitude, self.longitude, self.height, poles=False)
+        for name in ("speed", "azimuth", "climb"):
             require_scalar(name, getattr(self, name))
-        if not isinstance(self.earth, Earth):
-            raise InputError(f"earth must be an Earth, got {self.earth!r}")
-        vectors = ("weave", "weave_frequency", "weave_phase", "attitude", "swing", "swing_frequency", "swing_phase")
-        set_options(self, **{name: as_vector(name, getattr(self, name)) for name in vectors})
+        set_vectors(self, "weave", "weave_frequency", "weave_phase", *SWING_OPTIONS)
 
     def earth_fixed(self, t: Array) -> EarthFixed:
         """Return the motion relative to e at times t, shape (n,), s."""
@@ -86,22 +80,12 @@ class FastVehicle(EarthMotion):
         north = self.speed * math.cos(self.azimuth) / R_M
         east = self.speed * math.sin(self.azimuth) / arm
         latitude = self._weave(1, self.latitude, north, R_M, t)
-        if (near := np.abs(latitude[0]).max()) > math.pi / 2 - 1e-6:
-            raise InputError(f"t must end before the path reaches a pole, got latitude {near!r} rad")
+        check_off_poles("latitude of the path", latitude[0])
         longitude = self._weave(0, self.longitude, east, arm, t)
         height = self._weave(2, self.height, self.climb, 1.0, t)
-        return from_geodetic(self.earth, latitude, longitude, height, *euler_rates(*(self._swing(k, t) for k in range(3))))
+        return from_geodetic(self.earth, latitude, longitude, height, *swing_rates(self, t))
 
     def _weave(self, axis: int, start: float, rate: float, scale: float, t: Array) -> Jet:
         amplitude = self.weave[axis] / scale
-        value, first, second = _sine(amplitude, self.weave_frequency[axis], self.weave_phase[axis], t)
+        value, first, second = harmonic(amplitude, self.weave_frequency[axis], self.weave_phase[axis], t)
         return start + rate * t + value, rate + first, second
-
-    def _swing(self, axis: int, t: Array) -> Jet:
-        value, first, second = _sine(self.swing[axis], self.swing_frequency[axis], self.swing_phase[axis], t)
-        return self.attitude[axis] + value, first, second
-
-
-def _sine(amplitude: float, w: float, phase: float, t: Array) -> Jet:
-    sine, cosine = sincos(w, t, phase)
-    return amplitude * sine, amplitude * w * cosine, -amplitude * w * w * sine
