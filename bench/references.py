@@ -110,3 +110,8 @@ WGS84_REPORT = Source(
     "National Imagery and Mapping Agency: Department of Defense World Geodetic System 1984, TR8350.2, 3rd edition, "
     "amendment 1, 2000",
 )
+WU_DUAL = Source(
+    "WuDual",
+    "Wu Y., Hu X., Hu D., Li T., Lian J.: Strapdown inertial navigation system algorithms based on dual quaternions, "
+    "IEEE Trans. Aerospace and Electronic Systems 41(1), 110-132, 2005",
+)

@@ -16,6 +16,15 @@ from bench.table import Table
 SHORT = {
     "attitude-coning": {"phases": 2, "duration": 6.0, "rates": (100.0, 200.0)},
     "attitude-manoeuvre": {"phases": 2, "truth_rate": 1e4},
+    "ins-frames": {
+        "duration": 2.0,
+        "speeds": (300.0, 3000.0),
+        "rates": (50.0, 100.0),
+        "postponed": (2, 10),
+        "max_samples": 2,
+        "repeats": 1,
+        "timed_updates": 8,
+    },
     "gyro-free-circular": {"trials": 2, "duration": 6.0},
     "attitude-cost": {"max_samples": 2, "repeats": 1, "timed_updates": 8},
     "attitude-limits": {"frequencies": 2, "half_angles": 2, "cycles": 4, "max_samples": 3},

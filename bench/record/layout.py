@@ -20,14 +20,23 @@ def layout(tabs: Iterable[Any]) -> rrb.Blueprint:
     )
 
 
-def time_series(trace: Trace, *, legend: bool = True) -> rrb.TimeSeriesView:
-    """Return the plot of everything at and below the entity of a trace, scaled for its values."""
+def time_series(trace: Trace, *, legend: bool = True, span: tuple[float, float] | None = None) -> rrb.TimeSeriesView:
+    """Return the plot of everything at and below the entity of a trace, scaled for its values.
+
+    It shows the times from `span[0]` to `span[1]`, s; without a span, the minute round the time cursor.
+    """
     return rrb.TimeSeriesView(
+        axis_x=None if span is None else rrb.TimeAxis(view_range=_time_range(*span)),
         origin=f"/{trace.entity}",
         name=trace.title,
         axis_y=rrb.ScalarAxis(range=trace.display_range()) if trace.logarithmic else None,
         plot_legend=rrb.PlotLegend(rrb.Corner2D[trace.empty_corner()], visible=legend),
     )
+
+
+def _time_range(start: float, end: float) -> rrb.TimeRange:
+    first, last = (rrb.TimeRangeBoundary.absolute(seconds=t) for t in (start, end))
+    return rrb.TimeRange(start=first, end=last)
 
 
 def eye(position: Any, target: Any = (0, 0, 0)) -> rrb.EyeControls3D:

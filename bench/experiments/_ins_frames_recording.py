@@ -1,0 +1,46 @@
+"""The recording of `ins-frames`: the algorithms in the hard weave with attitude motion, where most is to be seen."""
+
+from pathlib import Path
+
+from bench.experiment import Outcome
+from bench.experiments._ins_frames_trials import (
+    BEST,
+    BEST_SAMPLES,
+    CONVENTIONAL,
+    DUAL,
+    HARSH,
+    IMPROVED,
+    IMPROVED_FIRST,
+    SAMPLES,
+    Flight,
+    fly,
+    postponed,
+    truth,
+)
+
+
+def record(outcome: Outcome, path: Path) -> None:
+    """Write the recording of one flight, at the middle one of the speeds."""
+    from bench.record.navigation import NavigationEstimate, NavigationRun, write_navigation_recording
+    from bench.report import condition_table, verdict_table
+
+    options = outcome.options
+    flight = Flight(sorted(options.speeds)[len(options.speeds) // 2], HARSH, True)
+    estimates = {}
+    for algorithm in (CONVENTIONAL, IMPROVED, DUAL, IMPROVED_FIRST, postponed(max(options.postponed)), BEST):
+        samples = BEST_SAMPLES if algorithm is BEST else SAMPLES
+        found = fly(flight, algorithm, options.rate, options.duration, samples)
+        true = truth(flight, options.rate, len(found) - 1, samples)
+        estimates[algorithm.label] = NavigationEstimate(found, true)
+    drawn = {figure.title: path.parent / "figures" / f"{figure.name}.png" for figure in outcome.evaluation.figures}
+    run = NavigationRun(
+        title=f"{outcome.experiment.name}, {flight.label}",
+        estimates=estimates,
+        truth=estimates[DUAL.label].truth,
+        configuration=f"# {outcome.experiment.title}\n\nShown: {flight.label}, {options.rate:g} Hz.\n\n"
+        f"{condition_table(outcome).markdown()}",
+        results=f"# Results\n\n{outcome.evaluation.summary}\n\n{verdict_table(outcome, reasons=False).markdown()}",
+        parameters={"experiment": outcome.experiment.name, "flight": flight.label, "rate_hz": options.rate},
+        figures={title: file for title, file in drawn.items() if file.is_file()},
+    )
+    write_navigation_recording(path, run)
