@@ -1,4 +1,4 @@
-"""The command line: list, run, view. Options, defaults and help come from the dataclasses.
+"""The command line: list, run, solve, export, view. Options, defaults and help come from the dataclasses.
 
 Exit codes: 0 done, 2 bad input, 1 failed.
 """
@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import tyro
 
+from bench.cli_recordings import REGISTRY, ExportCommand, SolveCommand, parse_export, parse_solve
 from bench.errors import BenchError, InputError
 
 if TYPE_CHECKING:
@@ -101,21 +102,22 @@ def _run(experiment: "Experiment", options: Any, common: RunOptions) -> None:
 
 
 def _print_outcome(outcome: "Outcome") -> None:
-    from bench.progress import print_verdicts
+    from bench.progress import print_files, print_verdicts
 
     print_verdicts(outcome)
-    for kind, path in outcome.files.items():
-        print(f"{kind + ':':42} {path}")
+    print_files(outcome.files)
 
 
 def _catalogue() -> dict[str, dict[str, str]]:
     from bench.experiment import experiments
+    from bench.formats import formats
     from bench.imu import error_models
     from bench.imu.grades import grades
     from bench.mjcf import model_names, model_summary
     from bench.motion import motions
     from bench.registry import first_line
     from bench.solvers import KINDS, solvers
+    from bench.starts import starts
 
     return {
         "experiments": {name: experiment.title for name, experiment in experiments().items()},
@@ -123,6 +125,8 @@ def _catalogue() -> dict[str, dict[str, str]]:
         "sensor errors": {name: first_line(model) for name, model in error_models().items()},
         "sensor grades": {name: grade.summary for name, grade in grades().items()},
         "rigs": {name: model_summary(name) for name in model_names()},
+        "formats of recordings": {name: first_line(cls) for name, cls in formats().items()},
+        "initial states of recordings": {name: first_line(cls) for name, cls in starts().items()},
         **{f"{kind} solvers": {name: first_line(cls) for name, cls in solvers(kind).items()} for kind in KINDS},
     }
 
@@ -148,11 +152,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _parse(arguments: list[str]) -> Callable[[], None]:
-    if arguments[:1] == ["run"] and len(arguments) > 1 and arguments[1] not in ("-h", "--help"):
-        return _parse_run(arguments[1:])
+    parsers = {"run": _parse_run, "solve": parse_solve, "export": parse_export}
+    if len(arguments) > 1 and arguments[0] in parsers and arguments[1] not in ("-h", "--help"):
+        return parsers[arguments[0]](arguments[1:])
     commands = (
         Annotated[ListCommand, tyro.conf.subcommand("list")]
         | Annotated[RunCommand, tyro.conf.subcommand("run")]
+        | Annotated[SolveCommand, tyro.conf.subcommand("solve")]
+        | Annotated[ExportCommand, tyro.conf.subcommand("export")]
         | Annotated[ViewCommand, tyro.conf.subcommand("view")]
     )
     command: Any = tyro.cli(
@@ -160,6 +167,7 @@ def _parse(arguments: list[str]) -> Callable[[], None]:
         prog="strapbench",
         description="Tells the truth about strapdown navigation algorithms.",
         args=arguments,
+        registry=REGISTRY,
     )
     return command
 

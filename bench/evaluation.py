@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bench.errors import Array, InputError, require_array, require_scalar, require_unit_quaternion
+from bench.errors import Array, InputError, require_array, require_integer, require_scalar, require_unit_quaternion
 from bench.rotation import euler_from_quat, quat_conjugate, quat_multiply, rotvec_from_quat, wrap
 
 
@@ -161,3 +161,69 @@ def percentile_of(published: ArrayLike, samples: ArrayLike) -> Array:
     if value.shape != samples.shape[1:]:
         raise InputError(f"published must have shape {samples.shape[1:]} like one sample, got {value.shape}")
     return np.asarray((samples < value).mean(axis=0) + 0.5 * (samples == value).mean(axis=0))
+
+
+def nees(errors: ArrayLike, covariance: ArrayLike) -> Array:
+    """Return e^T P^-1 e of each row: the errors squared, normalised by the covariance that an estimator claims.
+
+    Of a consistent estimator with normal errors it is chi-square of k degrees, its mean k. With an innovation and its
+    predicted covariance it is the NIS.
+
+    Parameters
+    ----------
+    errors : array_like, shape (n, k)
+    covariance : array_like, shape (n, k, k)
+        Symmetric, positive definite.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+
+    Raises
+    ------
+    InputError
+        If the shapes do not fit, a value is not finite, or a covariance is not symmetric and positive definite.
+    """
+    errors = require_array("errors", errors, (None, None))
+    n, k = errors.shape
+    P = require_array("covariance", covariance, (n, k, k))
+    # In units of the standard deviations, since the states' own units differ by many powers of ten.
+    variance = np.diagonal(P, axis1=1, axis2=2)
+    if not (variance > 0).all():
+        raise InputError(f"covariance must be positive definite, got a variance of {variance.min():g}")
+    scale = np.sqrt(variance)
+    correlation = P / (scale[:, :, None] * scale[:, None, :])
+    if (skew := np.abs(correlation - np.swapaxes(correlation, 1, 2)).max()) > 1e-9:
+        raise InputError(f"covariance must be symmetric, correlations differ by {skew:g}")
+    try:
+        root = np.linalg.cholesky(correlation)
+    except np.linalg.LinAlgError:
+        raise InputError("covariance must be positive definite, one is not") from None
+    white = np.linalg.solve(root, (errors / scale)[:, :, None])[:, :, 0]
+    return np.asarray((white * white).sum(axis=1))
+
+
+def chi_square_bounds(degrees: int, trials: int = 1, level: float = 0.95) -> tuple[float, float]:
+    """Return the two-sided bounds of a mean of NEES or NIS over independent trials, if the estimator is consistent.
+
+    Parameters
+    ----------
+    degrees : int
+        Of one value: the number of states or of measured components.
+    trials : int
+        Independent values in the mean; those along one run are not.
+    level : float
+        Probability of lying between the bounds, half of the rest on either side.
+
+    Raises
+    ------
+    InputError
+        If a number is below 1, or the level is not between 0 and 1.
+    """
+    from scipy.stats import chi2
+
+    total = require_integer("degrees", degrees, minimum=1) * require_integer("trials", trials, minimum=1)
+    if not 0.0 < require_scalar("level", level) < 1.0:
+        raise InputError(f"level must be between 0 and 1, got {level!r}")
+    low, high = chi2.ppf([0.5 * (1 - level), 0.5 * (1 + level)], total) / trials
+    return float(low), float(high)

@@ -8,14 +8,18 @@ report.md, report.html, tables/*.parquet, figures/*.png, recording.rrd
 
 import json
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from bench.errors import InputError, OutputError
 from bench.experiment import Outcome
-from bench.table import replacing
+from bench.figures import Figure
+from bench.table import Table, replacing
+
+if TYPE_CHECKING:
+    from bench.report import Block
 
 FOLDERS = {"parts": ".parquet", "tables": ".parquet", "figures": ".png"}
 MADE_HERE = ("result.json", *FOLDERS, "report.md", "report.html", "recording.rrd", "inputs.json")
@@ -88,47 +92,99 @@ class RunFolder:
                 target.unlink(missing_ok=True)
 
     def write(self, outcome: Outcome, *, record: bool, say: Callable[[str], None]) -> Outcome:
-        """Write tables, figures, recording and report, then result.json; return the outcome with its files.
+        """Write tables, figures, recording and report of an experiment; return the outcome with its files.
 
         Raises
         ------
         OutputError
-            If a file cannot be written; the finished parts are kept.
+            If a file cannot be written; what was written is kept.
+        """
+        from bench.report import blocks
+
+        recorder = outcome.experiment.record
+
+        def at(files: dict[str, Path]) -> Outcome:
+            return replace(outcome, folder=self.path, files=files)
+
+        content = Content(
+            title=outcome.experiment.title,
+            tables={**outcome.tables, "rows": outcome.rows},
+            figures=outcome.evaluation.figures,
+            record=None if recorder is None or not record else lambda path, files: recorder(at(files), path),
+            report=lambda files: blocks(at(files)),
+            result=lambda: _result(outcome),
+        )
+        return at(self.write_content(content, say=say))
+
+    def write_content(self, content: "Content", *, say: Callable[[str], None]) -> dict[str, Path]:
+        """Write tables, figures, recording and report, then result.json; return the files by kind.
+
+        Raises
+        ------
+        OutputError
+            If a file cannot be written; what was written is kept.
         """
         try:
-            return self._write(outcome, record, say)
+            return self._write(content, say)
         except OSError as error:
             raise OutputError(
-                f"out {str(self.path)!r} cannot be written: {error.strerror or error}; finished parts are kept"
+                f"out {str(self.path)!r} cannot be written: {error.strerror or error}; what was written is kept"
             ) from error
 
-    def _write(self, outcome: Outcome, record: bool, say: Callable[[str], None]) -> Outcome:
+    def _write(self, content: "Content", say: Callable[[str], None]) -> dict[str, Path]:
         from bench.figures import draw
         from bench.report import html_report, markdown_report
 
         files: dict[str, Path] = {}
         for folder in ("tables", "figures"):
             (self.path / folder).mkdir(exist_ok=True)
-        for name, table in {**outcome.tables, "rows": outcome.rows}.items():
+        for name, table in content.tables.items():
             table.write_parquet(self.path / "tables" / f"{name}.parquet")
         say("Drawing the figures ...")
-        for figure in outcome.evaluation.figures:
+        for figure in content.figures:
             files[f"figure {figure.name}"] = path = self.path / "figures" / f"{figure.name}.png"
             with replacing(path) as temporary:
                 draw(figure, temporary)
-        outcome = replace(outcome, folder=self.path, files=files)
-        if record and outcome.experiment.record is not None:
+        if content.record is not None:
             say("Writing the recording ...")
             recording = self.path / "recording.rrd"
-            outcome.experiment.record(outcome, recording)
+            content.record(recording, files)
             files["recording"] = recording
-        for kind, text in (("report.md", markdown_report(outcome)), ("report.html", html_report(outcome))):
+        report = content.report(files)
+        for kind, text in (("report.md", markdown_report(report)), ("report.html", html_report(content.title, report))):
             files[kind] = self.path / kind
             with replacing(files[kind]) as temporary:
                 temporary.write_text(text, encoding="utf-8")
-        _write_json(self.path / "result.json", _result(outcome))
+        _write_json(self.path / "result.json", content.result())
         shutil.rmtree(self.parts, ignore_errors=True)
-        return outcome
+        return files
+
+
+@dataclass(frozen=True, eq=False)
+class Content:
+    """What a finished run leaves in its folder.
+
+    Attributes
+    ----------
+    title : str
+        Of the report's page.
+    tables : mapping of str to Table
+        By file name.
+    figures : sequence of Figure
+    record : callable or None
+        (path, files) -> None: writes the recording; the figures are among the files.
+    report : callable
+        (files) -> blocks of the report.
+    result : callable
+        () -> what result.json holds.
+    """
+
+    title: str
+    tables: Mapping[str, Table]
+    figures: Sequence[Figure]
+    record: Callable[[Path, dict[str, Path]], None] | None
+    report: "Callable[[dict[str, Path]], Sequence[Block]]"
+    result: Callable[[], dict[str, Any]]
 
 
 def _difference(a: dict[str, Any], b: dict[str, Any], prefix: str = "") -> str:

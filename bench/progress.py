@@ -1,7 +1,8 @@
 """What a run shows in the terminal: a progress bar, lines that say what happens, the table of verdicts."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from pathlib import Path
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
@@ -10,6 +11,7 @@ from rich.table import Table as RichTable
 
 from bench.experiment import Outcome
 from bench.runner import Reporter
+from bench.table import Table
 
 COLOURS = {"holds": "green", "does not hold": "red", "cannot be judged": "yellow"}
 
@@ -47,6 +49,28 @@ def reporting(title: str) -> Iterator[Reporter]:
     finally:
         if bar.live.is_started:
             bar.stop()
+
+
+def saying() -> Reporter:
+    """Return what prints lines only, for work without parts."""
+    console = Console(stderr=True)
+    return Reporter(say=lambda text: console.print(text, markup=False, highlight=False, soft_wrap=True))
+
+
+def print_table(table: Table) -> None:
+    """Print a table under its title."""
+    shown = RichTable(title=table.title, box=SIMPLE_HEAD, title_justify="left")
+    for k, heading in enumerate(table.columns):
+        shown.add_column(heading, justify="left" if k == 0 else "right")
+    for row in table.cells():
+        shown.add_row(*row)
+    Console().print(shown, markup=False)
+
+
+def print_files(files: Mapping[str, Path]) -> None:
+    """Print what was written, and where."""
+    for kind, path in files.items():
+        print(f"{kind + ':':42} {path}")
 
 
 def print_verdicts(outcome: Outcome) -> None:

@@ -6,6 +6,7 @@ A report is a list of blocks; each format renders the same blocks.
 import base64
 import html
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -96,8 +97,8 @@ def blocks(outcome: Outcome) -> list[Block]:
     ]
 
 
-def markdown_report(outcome: Outcome) -> str:
-    """Return the report as Markdown; pictures by relative path."""
+def markdown_report(content: Sequence[Block]) -> str:
+    """Return a report as Markdown; pictures by relative path."""
 
     def render(block: Block) -> str:
         match block:
@@ -110,15 +111,14 @@ def markdown_report(outcome: Outcome) -> str:
             case _:
                 return block
 
-    return "\n\n".join(render(block) for block in blocks(outcome)) + "\n"
+    return "\n\n".join(render(block) for block in content) + "\n"
 
 
-def html_report(outcome: Outcome) -> str:
-    """Return the report as one HTML page that needs no other file."""
-    body = "\n".join(_html(block) for block in blocks(outcome))
-    title = html.escape(outcome.experiment.title)
+def html_report(title: str, content: Sequence[Block]) -> str:
+    """Return a report as one HTML page that needs no other file."""
+    body = "\n".join(_html(block) for block in content)
     return (
-        f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{title}</title>'
+        f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{html.escape(title)}</title>'
         f"<style>{STYLE}</style></head>\n<body>\n{body}\n</body></html>\n"
     )
 

@@ -69,7 +69,10 @@ class Table:
         import pyarrow
         import pyarrow.parquet
 
-        data = pyarrow.table({name: pyarrow.array(column.tolist()) for name, column in self.columns.items()})
+        def plain(column: Column) -> Any:
+            return column if column.dtype in (np.float64, np.int64) else column.tolist()  # else slow
+
+        data = pyarrow.table({name: pyarrow.array(plain(column)) for name, column in self.columns.items()})
         data = data.replace_schema_metadata({"title": self.title})
         with replacing(path) as temporary:
             pyarrow.parquet.write_table(data, temporary)

@@ -10,19 +10,21 @@ import pytest
 ROOT = Path(__file__).parents[1]
 FILES = sorted((ROOT / "bench").rglob("*.py"))
 ONLY_HERE = {
-    "mujoco": {"bench/rig.py", "bench/mjcf.py"},
+    "mujoco": {"bench/rig.py", "bench/mjcf.py", "bench/turntable.py"},
     "rerun": {
         "bench/record/_attitude_scene.py",
+        "bench/record/_navigation_scene.py",
         "bench/record/attitude.py",
         "bench/record/gyro_free.py",
         "bench/record/instrument.py",
         "bench/record/layout.py",
+        "bench/record/navigation.py",
         "bench/record/stream.py",
         "bench/viewer.py",
     },
     "matplotlib": {"bench/figures.py"},
     "rich": {"bench/progress.py"},
-    "tyro": {"bench/cli.py"},
+    "tyro": {"bench/cli.py", "bench/cli_recordings.py"},
     "numba": {"bench/jit.py"},
 }
 
@@ -69,7 +71,7 @@ def test_solvers_know_neither_the_rig_nor_the_motion(path):
         assert not module.startswith(forbidden), module
 
 
-@pytest.mark.parametrize("folder", ["motion", "imu", "solvers", "experiments"])
+@pytest.mark.parametrize("folder", ["motion", "imu", "solvers", "experiments", "formats", "starts"])
 def test_what_discovery_imports_needs_numpy_only(folder):
     """Discovered files must not slow the command line: at the top they import the standard library, numpy and bench."""
     for path in sorted((ROOT / "bench" / folder).rglob("[!_]*.py")):

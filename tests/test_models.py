@@ -56,7 +56,8 @@ def sites(model: mujoco.MjModel) -> tuple[np.ndarray, np.ndarray]:
 
 
 def test_every_model_is_here() -> None:
-    assert sorted(path.stem for path in MODELS.glob("*.xml")) == sorted(ALL)
+    # The turntable, which is no free body, has its own tests.
+    assert sorted(path.stem for path in MODELS.glob("*.xml")) == sorted([*ALL, "turntable"])
 
 
 @pytest.mark.parametrize("name", SINGLE)

@@ -1,7 +1,9 @@
 """Tracks of a navigation run: on a map, in a local east-north-up frame, and the body's attitude in it."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
 import numpy as np
 import rerun as rr
@@ -69,53 +71,51 @@ class Tracks:
         """Half the length of the drawn vehicle, m."""
         return 0.5 * round_down(0.12 * self.extent)
 
-    def log(self, rec: rr.RecordingStream, pose_rows: int | None) -> None:
-        """Log tracks, moving bodies and their names."""
-        for entity in ("track", "body"):
-            rec.log(entity, rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
+    def log_attitudes(self, rec: rr.RecordingStream, pose_rows: int | None) -> None:
+        """Log the attitudes in east-north-up: what is shown last as a vehicle, the others as axes."""
+        rec.log("body", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
+        _log_compass(rec)
+        last = next(reversed(self.shown))
+        for name, trajectory in self.shown.items():
+            entity, rows = f"body/{self.parts[name]}", thinned(trajectory.t, pose_rows)
+            t = trajectory.t[rows]
+            send_pose(rec, entity, t, np.zeros((len(t), 3)), trajectory.q_nb[rows])
+            if name == last:
+                _log_body(rec, entity, 1.0, self.colours[name])
+            else:
+                axes = rr.Arrows3D(vectors=2.2 * np.eye(3), radii=0.02, colors=self.colours[name])
+                rec.log(f"{entity}/axes", axes, static=True)
+
+    def log_places(self, rec: rr.RecordingStream, pose_rows: int | None) -> None:
+        """Log tracks and moving vehicles with their names, in space and on the map."""
+        rec.log("track", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
         for k, (name, trajectory) in enumerate(self.shown.items()):
             part, colour, enu = self.parts[name], self.colours[name], self.enu[name]
-            thin, rows = thinned(trajectory.t, POINTS), thinned(trajectory.t, pose_rows)
-            self._log_track(rec, part, trajectory, enu, colour, thin)
+            rows = thinned(trajectory.t, pose_rows)
             t, q_lb = trajectory.t[rows], quat_normalize(quat_multiply(self.q_le, trajectory.q_eb[rows]))
             send_pose(rec, f"track/bodies/{part}", t, enu[rows], q_lb)
             _log_body(rec, f"track/bodies/{part}", self.body, colour)
             # Above one another, because estimates begin at one place; the truth below.
             above = -3.0 if part == TRUTH else 3.0 + 1.7 * k
             send_tag(rec, f"track/tags/{part}", t, enu[rows] + [0.0, 0.0, above * self.body], name, colour)
-            self._send_map_point(rec, f"map/now/{part}", trajectory, rows, colour)
-            zero = np.zeros((len(t), 3))
-            send_pose(rec, f"body/{part}", t, zero, trajectory.q_nb[rows])
-            if k == len(self.shown) - 1:
-                _log_body(rec, f"body/{part}", 1.0, colour)
-            else:
-                axes = rr.Arrows3D(vectors=2.2 * np.eye(3), radii=0.02, colors=colour)
-                rec.log(f"body/{part}/axes", axes, static=True)
-        _log_compass(rec)
+            self._log_paths(rec, name)
+            place, now = _degrees(trajectory, rows), f"map/now/{part}"
+            rec.log(now, rr.GeoPoints.from_fields(radii=rr.Radius.ui_points(5.0), colors=colour), static=True)
+            send(rec, now, t, partial(_geo_points, place))
 
-    def _log_track(
-        self, rec: rr.RecordingStream, part: str, trajectory: Trajectory, enu: Array, colour: Colour, thin: slice
-    ) -> None:
-        width = 3.0 if part == TRUTH else 1.5
-        line = rr.LineStrips3D([enu[thin]], colors=colour, radii=rr.Radius.ui_points(width))
-        rec.log(f"track/paths/{part}", line, static=True)
-        place = _degrees(trajectory, thin)
-        strip = rr.GeoLineStrings(lat_lon=[place], colors=colour, radii=rr.Radius.ui_points(width))
-        rec.log(f"map/paths/{part}", strip, static=True)
-
-    def _send_map_point(
-        self, rec: rr.RecordingStream, entity: str, trajectory: Trajectory, rows: slice, colour: Colour
-    ) -> None:
-        place = _degrees(trajectory, rows)
-        rec.log(entity, rr.GeoPoints.from_fields(radii=rr.Radius.ui_points(5.0), colors=colour), static=True)
-        send(rec, entity, trajectory.t[rows], lambda k: rr.GeoPoints.columns(positions=place[k]))
+    def _log_paths(self, rec: rr.RecordingStream, name: str) -> None:
+        part, trajectory = self.parts[name], self.shown[name]
+        thin = thinned(trajectory.t, POINTS)
+        look = {"colors": self.colours[name], "radii": rr.Radius.ui_points(3.0 if part == TRUTH else 1.5)}
+        rec.log(f"track/paths/{part}", rr.LineStrips3D([self.enu[name][thin]], **look), static=True)
+        rec.log(f"map/paths/{part}", rr.GeoLineStrings(lat_lon=[_degrees(trajectory, thin)], **look), static=True)
 
     def view(self) -> rrb.Spatial3DView:
         """Return the view of the tracks in space."""
         return rrb.Spatial3DView(
             origin="/track",
             name=f"Tracks in east-north-up at the start; vehicle drawn {times(2 * self.body)} m long",
-            eye_controls=eye(self.centre + 1.2 * self.extent * EYE, self.centre),
+            eye_controls=eye(self.centre + 1.3 * self.extent * EYE, self.centre),
             line_grid=rrb.LineGrid3D(visible=True, spacing=round_down(0.3 * self.extent)),
             spatial_information=rrb.SpatialInformation(target_frame="tf#/track", show_axes=True),
         )
@@ -153,6 +153,10 @@ def _frame(tracks: list[Array]) -> tuple[Array, float]:
 
 def _degrees(trajectory: Trajectory, rows: slice) -> Array:
     return np.stack([trajectory.latitude[rows], trajectory.longitude[rows]], axis=1) / DEG
+
+
+def _geo_points(place: Array, rows: slice) -> Iterable[Any]:
+    return rr.GeoPoints.columns(positions=place[rows])
 
 
 def _log_body(rec: rr.RecordingStream, entity: str, size: float, colour: Colour) -> None:

@@ -112,7 +112,9 @@ def write_navigation_recording(
         for k, figure in enumerate(run.figures.values()):
             image = rr.EncodedImage(contents=Path(figure).read_bytes(), media_type="image/png")
             rec.log(f"figures/{k}", image, static=True)
-        tracks.log(rec, pose_rows)
+        tracks.log_attitudes(rec, pose_rows)
+        if not run.attitude_only:
+            tracks.log_places(rec, pose_rows)
         if triads is not None:
             triads.log(rec, {name: thinned(e.t, pose_rows) for name, e in judged.items()})
         # Drawn in alphabetical order: one line below another that coincides with it shows at its edges.

@@ -14,6 +14,7 @@ from bench.registry import discover
 
 KINDS = {
     "attitude": ("bench.solvers.attitude", "AttitudeSolver"),
+    "damping": ("bench.solvers.damping", "DampingFilter"),
     "gyro-free": ("bench.solvers.gyro_free", "GyroFreeSolver"),
     "navigation": ("bench.solvers.navigation", "NavigationSolver"),
 }

@@ -63,8 +63,8 @@ class NavigationState:
 class NavigationSolver(ABC):
     """Base of the navigation solvers: the contract, the loop over chunks and all checks.
 
-    A solver declares ``name`` and ``source`` and defines `_constants`, `_carry` and `_update`; it may define the facts
-    `order_periodic`; it overrides nothing else.
+    A solver declares ``name`` and ``source`` and defines `_constants`, `_carry` and `_update`; it may define
+    `_check_options` and the fact `order_periodic`; it overrides nothing else.
 
     Parameters
     ----------
@@ -93,8 +93,16 @@ class NavigationSolver(ABC):
         require_choice("height", self.height, HEIGHTS)
         self._check_options()
 
-    def _check_options(self) -> None:
+    def _check_options(self) -> None:  # noqa: B027 - a solver without further options has nothing to check
         """Check the options that a solver adds."""
+
+    @property
+    def order_periodic(self) -> int | None:
+        """Lowest of the orders in dt of attitude, velocity and position on a smooth motion with attitude swing.
+
+        None where there is no slope to state.
+        """
+        return None
 
     @abstractmethod
     def _constants(self, earth: Earth, dt: float) -> tuple[Any, ...]:

@@ -1,6 +1,7 @@
 """Kernels of one update's increments: rotation vector, single and double integral of the specific force in the body.
 
-Vectors are in body axes at the start of the update; increments are rows of (dtheta_b, dvel_b).
+Vectors are in body axes at the start of the update; increments are rows of (dtheta_b, dvel_b). `block_integrals` does
+for many updates side by side what `body_integrals` and `rotation_terms` do for one, in half the time.
 """
 
 import math
@@ -8,6 +9,9 @@ import math
 import numpy as np
 
 from bench.jit import njit
+
+BLOCK = 64  # updates side by side: the compiler turns each loop over them into vector instructions
+SERIES = 0.04  # rad^2: for turns whose square is below, the power series are at rounding
 
 
 @njit
@@ -55,7 +59,7 @@ def rotation_terms(px, py, pz, ux, uy, uz):
     a1 = (1 - cos p)/p^2, a2 = (p - sin p)/p^3, a3 = (1/2 - a1)/p^2; 1/6 is in the scrolling sum already.
     """
     square = px * px + py * py + pz * pz
-    if square < 0.04:
+    if square < SERIES:
         a1 = 1 / 2 + square * (-1 / 24 + square * (1 / 720 + square * (-1 / 40320 + square * (1 / 3628800))))
         a2 = square * (-1 / 120 + square * (1 / 5040 + square * (-1 / 362880 + square * (1 / 39916800))))
         a3 = 1 / 24 + square * (-1 / 720 + square * (1 / 40320 + square * (-1 / 3628800)))
@@ -77,23 +81,16 @@ def rotation_terms(px, py, pz, ux, uy, uz):
     )
 
 
-BLOCK = 64  # updates side by side: the compiler turns each loop over them into vector instructions
-SERIES = 0.04  # rad^2: below this square of an angle the power series are at rounding
-
-
 @njit
 def block_integrals(S, a, L, exact, d, begin, count, out):
     """Fill out (10, BLOCK): quaternion of the turn of the body, single and double integral of f (the latter over T).
 
-    ``sigma = sum d_i + 1/2 sum_ij S_ij d_i x d_j``, ``u = sum v_j + sum_ij S_ij d_i x v_j``,
-    ``s = sum a_j v_j + sum_ij L_ij d_i x v_j`` of the N count increments d_i, v_i in d (n, 6) from row `begin` on. S is
-    antisymmetric; 1/2 added to all of it holds the rotation of the body to first order. With `exact` it is exact for
-    one constant rate and force: to u and s are added a1 sigma x u + a2 sigma x (sigma x u) and
-    (a2 - 1/6) sigma x u + a3 sigma x (sigma x u), a1 = (1 - cos p)/p^2, a2 = (1 - sin p/p)/p^2, a3 = (1/2 - a1)/p^2,
-    p = |sigma|; 1/6 is in L already.
+    Of the N count increments in d (n, 6) from row `begin` on, a column an update. S, a, L as in `body_integrals`; the
+    coning is ``1/2 sum_ij S_ij d_i x d_j``, to which a constant added to S does nothing. With `exact` the integrals
+    hold the `rotation_terms`.
     """
     N = S.shape[0]
-    # Arrays that the function makes itself: the compiler sees that they do not overlap.
+    # Arrays of its own: of these the compiler knows that they do not overlap, or it would not vectorise.
     work, part, total = np.empty((N, 6, BLOCK)), np.empty((6, BLOCK)), np.zeros((10, BLOCK))
     for u in range(count):
         for j in range(N):
@@ -123,32 +120,14 @@ def block_integrals(S, a, L, exact, d, begin, count, out):
             total[7, u] += w * vx + (ly * vz - lz * vy)
             total[8, u] += w * vy + (lz * vx - lx * vz)
             total[9, u] += w * vz + (lx * vy - ly * vx)
-    # Coefficients a1, a2 - 1/6, a3 and those of the quaternion: series, and closed forms for the few large turns.
-    for u in range(count):
-        px, py, pz = total[1, u], total[2, u], total[3, u]
-        s = px * px + py * py + pz * pz
-        part[0, u] = 1 / 2 + s * (-1 / 24 + s * (1 / 720 + s * (-1 / 40320 + s * (1 / 3628800))))
-        part[1, u] = s * (-1 / 120 + s * (1 / 5040 + s * (-1 / 362880 + s * (1 / 39916800))))
-        part[2, u] = 1 / 24 + s * (-1 / 720 + s * (1 / 40320 + s * (-1 / 3628800)))
-        part[3, u] = 1.0 + s * (-1 / 8 + s * (1 / 384 + s * (-1 / 46080 + s * (1 / 10321920))))
-        part[4, u] = 0.5 + s * (-1 / 48 + s * (1 / 3840 + s * (-1 / 645120 + s * (1 / 185794560))))
-        part[5, u] = s
-    for u in range(count):
-        if part[5, u] > SERIES:
-            s = part[5, u]
-            angle = math.sqrt(s)
-            part[0, u] = (1.0 - math.cos(angle)) / s
-            part[1, u] = (1.0 - math.sin(angle) / angle) / s - 1 / 6
-            part[2, u] = (0.5 - part[0, u]) / s
-            part[3, u], part[4, u] = math.cos(0.5 * angle), math.sin(0.5 * angle) / angle
+    turn_coefficients(total, count, part)
     for u in range(count):
         px, py, pz, ux, uy, uz = total[1, u], total[2, u], total[3, u], total[4, u], total[5, u], total[6, u]
-        a1, a2, a3 = part[0, u], part[1, u], part[2, u]
-        c, f = part[3, u], part[4, u]
+        c, f, a1, a2, a3 = part[0, u], part[1, u], part[2, u], part[3, u], part[4, u]
         total[0, u], total[1, u], total[2, u], total[3, u] = c, f * px, f * py, f * pz
         if exact:
-            wx, wy, wz = py * uz - pz * uy, pz * ux - px * uz, px * uy - py * ux
-            xx, xy, xz = py * wz - pz * wy, pz * wx - px * wz, px * wy - py * wx
+            wx, wy, wz = cross(px, py, pz, ux, uy, uz)
+            xx, xy, xz = cross(px, py, pz, wx, wy, wz)
             b2 = a2 + 1 / 6
             total[4, u], total[5, u] = ux + (a1 * wx + b2 * xx), uy + (a1 * wy + b2 * xy)
             total[6, u] = uz + (a1 * wz + b2 * xz)
@@ -158,3 +137,28 @@ def block_integrals(S, a, L, exact, d, begin, count, out):
     for c in range(10):
         for u in range(count):
             out[c, u] = total[c, u]
+
+
+@njit
+def turn_coefficients(total, count, out):
+    """Fill out[:5] with cos p/2, sin(p/2)/p and the a1, a2 - 1/6, a3 of `rotation_terms`; total[1:4] are the vectors p.
+
+    Series for all, so that they are vector instructions, then the closed forms for the few turns that are large.
+    """
+    for u in range(count):
+        px, py, pz = total[1, u], total[2, u], total[3, u]
+        s = px * px + py * py + pz * pz
+        out[0, u] = 1.0 + s * (-1 / 8 + s * (1 / 384 + s * (-1 / 46080 + s * (1 / 10321920))))
+        out[1, u] = 0.5 + s * (-1 / 48 + s * (1 / 3840 + s * (-1 / 645120 + s * (1 / 185794560))))
+        out[2, u] = 1 / 2 + s * (-1 / 24 + s * (1 / 720 + s * (-1 / 40320 + s * (1 / 3628800))))
+        out[3, u] = s * (-1 / 120 + s * (1 / 5040 + s * (-1 / 362880 + s * (1 / 39916800))))
+        out[4, u] = 1 / 24 + s * (-1 / 720 + s * (1 / 40320 + s * (-1 / 3628800)))
+        out[5, u] = s
+    for u in range(count):
+        s = out[5, u]
+        if s >= SERIES:
+            angle = math.sqrt(s)
+            out[0, u], out[1, u] = math.cos(0.5 * angle), math.sin(0.5 * angle) / angle
+            out[2, u] = (1.0 - math.cos(angle)) / s
+            out[3, u] = (1.0 - math.sin(angle) / angle) / s - 1 / 6
+            out[4, u] = (0.5 - out[2, u]) / s

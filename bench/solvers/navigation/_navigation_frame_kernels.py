@@ -14,8 +14,8 @@ from bench.jit import njit
 from bench.rotation_kernels import multiply, rotate
 from bench.solvers.navigation._increment_kernels import BLOCK, block_integrals, cross
 
-LARGEST_STEP = 1e-3  # rad of longitude an update: the way east loses a tenth of its square
-SMALLEST_COSINE = 1e-6  # of the latitude: 6 m from a pole
+LARGEST_STEP = 1e-2  # rad of longitude an update: beyond, the series of its arc tangent is not at rounding
+SMALLEST_COSINE = 1e-6  # of the latitude: 6 m from a pole; nearer, latitude and longitude lose digits
 
 
 @njit
@@ -60,30 +60,24 @@ def turned_axis(north, kx, ky, kz, hx, hy, hz):
 
 
 @njit
-def level_turn(north, across, c, kx, ky, kz, dx, dy):
-    """Return the turn of n in e that goes with the displacement (dx, dy) in n; (kx, ky, kz) is the Earth's axis in n.
+def level_turn(north, across, b, kx, ky, kz, dx, dy):
+    """Return the turn of n in e that goes with a small displacement (dx, dy) in n; (kx, ky, kz) is the Earth's axis.
 
     Free azimuth: about horizontal axes only. North: (-dL, cosL, sinL times dx / ((R_N + h) cosL)).
     """
     if north:
         longitude = dx * across / ky
-        return -dy * (across + c * ky * ky), longitude * ky, longitude * kz
-    along = c * (kx * dx + ky * dy)
+        return -dy * (across + b * ky * ky), longitude * ky, longitude * kz
+    along = b * (kx * dx + ky * dy)
     return -(across * dy + along * ky), across * dx + along * kx, 0.0
 
 
 @njit
-def turned_frame(north, f0, f1, f2, f3, tx, ty, tz, ky):
-    """Return the frame after a turn of n by (tx, ty, tz), and its attitude q_en."""
+def attitude_of(north, f0, f1, f2, f3):
+    """Return q_en of the frame: q_z o q_x of its half angles, or the frame itself."""
     if north:
-        c, _, _, s = small_turn(0.0, 0.0, ty / ky)
-        f0, f1 = f0 * c - f1 * s, f1 * c + f0 * s
-        c, s, _, _ = small_turn(tx, 0.0, 0.0)
-        f2, f3 = f2 * c - f3 * s, f3 * c + f2 * s
-        return f0, f1, f2, f3, f0 * f2, f0 * f3, f1 * f3, f1 * f2  # q_z o q_x
-    w, x, y, z = small_turn(tx, ty, tz)
-    f0, f1, f2, f3 = multiply(f0, f1, f2, f3, w, x, y, z)
-    return f0, f1, f2, f3, f0, f1, f2, f3
+        return f0 * f2, f0 * f3, f1 * f3, f1 * f2
+    return f0, f1, f2, f3
 
 
 @njit
@@ -95,11 +89,53 @@ def unit_frame(north, f0, f1, f2, f3):
 
 
 @njit
+def north_step(p, across, b, h, f0, f1, f2, f3, cosine, sine, middle, earth, dx, dy, dz):
+    """Return the frame after the displacement d in axes 0, the gain of height, the turn of n in i reversed, and dlon.
+
+    ``dlon = atan(dx / (rho - dy sinL + dz cosL))``; what remains lies in the new meridian and is resolved in n half-way
+    in latitude. cosine and sine are of the latitude at the start, middle is the cosine half-way. The turn is that of
+    dlon and the Earth about its axis, then of -dL about east.
+    """
+    rho = (p[0] / math.sqrt(1.0 - p[1] * sine * sine) + h) * cosine
+    t = dx / (rho - sine * dy + cosine * dz)
+    longitude, sag = t * (1.0 - t * t * (1 / 3)), 0.5 * dx * t
+    dy, dz = dy - sine * sag, dz + cosine * sag
+    curvature = across + b * middle * middle
+    half = 0.5 * curvature * dy
+    c = 1.0 - 0.5 * half * half
+    latitude, lift = curvature * (c * dy - half * dz), c * dz + half * dy
+    c, x, _, _ = small_turn(latitude, 0.0, 0.0)
+    f2, f3 = f2 * c + f3 * x, f3 * c - f2 * x
+    a, _, _, z = small_turn(0.0, 0.0, longitude)
+    f0, f1 = f0 * a - f1 * z, f1 * a + f0 * z
+    a, _, _, z = small_turn(0.0, 0.0, -(longitude + earth))
+    y, z = z * cosine, z * sine
+    return f0, f1, f2, f3, lift, c * a, x * a, c * y - x * z, c * z + x * y, longitude
+
+
+@njit
+def wander_step(across, b, f0, f1, f2, f3, kx, ky, kz, earth, hx, hy, dx, dy, dz):
+    """Return the frame after the displacement d in axes 0, the gain of height, and the turn of n in i reversed.
+
+    d is resolved in axes m, which h takes axes 0 to; (kx, ky, kz) is the Earth's axis there. The two turns of the
+    product ``exp(h) exp(turn of the Earth) exp(h)`` are taken together.
+    """
+    wx, wy, wz = cross(hx, hy, 0.0, dx, dy, dz)
+    yx, yy, yz = cross(hx, hy, 0.0, wx, wy, wz)
+    dx, dy, dz = dx - (wx - 0.5 * yx), dy - (wy - 0.5 * yy), dz - (wz - 0.5 * yz)
+    tx, ty, _ = level_turn(False, across, b, kx, ky, kz, dx, dy)
+    w, x, y, z = small_turn(tx, ty, 0.0)
+    f0, f1, f2, f3 = multiply(f0, f1, f2, f3, w, x, y, z)
+    w, x, y, z = small_turn(-(tx + earth * kx), -(ty + earth * ky), -earth * kz)
+    return f0, f1, f2, f3, dz, w, x, y, z
+
+
+@njit
 def update(p, T, scrolling, north, held, every, first, turn, count, carry, state):
     """Do `count` updates with the integrals `turn` of `block_integrals`; return how many succeeded.
 
     carry: q_nb (4), frame (4), v_n (3), height, gravity in n (3) and the two numbers of the curvature half-way through
-    the last update, turn of n not compensated yet (3). Fills state (12, BLOCK) with q_en, q_nb, v_n, height. With a
+    the last update, turn of n not compensated yet (4). Fills state (12, BLOCK) with q_en, q_nb, v_n, height. With a
     north azimuth it ends before an update that comes too close to a pole.
     """
     half, square, third, earth = 0.5 * T, 0.5 * T * T, 1 / 3, T * p[3]
@@ -107,9 +143,9 @@ def update(p, T, scrolling, north, held, every, first, turn, count, carry, state
     f0, f1, f2, f3 = carry[4], carry[5], carry[6], carry[7]
     vx, vy, vz, h = carry[8], carry[9], carry[10], carry[11]
     gx, gy, gz = carry[12], carry[13], carry[14]
-    across, c = carry[15], carry[16]
-    tx, ty, tz = carry[17], carry[18], carry[19]
-    _, _, _, _, ew, ex, ey, ez = turned_frame(north, f0, f1, f2, f3, 0.0, 0.0, 0.0, 1.0)
+    across, b = carry[15], carry[16]
+    late = carry[17], carry[18], carry[19], carry[20]
+    ew, ex, ey, ez = attitude_of(north, f0, f1, f2, f3)
     kx, ky, kz = axis(ew, ex, ey, ez)
     for u in range(count):
         # Integrals of the specific force in axes 0: velocity (u) and displacement (s).
@@ -125,22 +161,21 @@ def update(p, T, scrolling, north, held, every, first, turn, count, carry, state
         mz = half * vz + third * (sz + square * gz)
         if north and ky < SMALLEST_COSINE:
             return u
-        hx, hy, hz = level_turn(north, across, c, kx, ky, kz, mx, my)
-        jx, jy, jz = p[3] * kx, p[3] * ky, p[3] * kz  # omega_ie in axes 0
+        hx, hy, hz = level_turn(north, across, b, kx, ky, kz, mx, my)
+        ax, ay, az = kx, ky, kz
         kx, ky, kz = turned_axis(north, kx, ky, kz, hx, hy, hz)
         middle = h if held else h + mz + 0.5 * (hy * mx - hx * my)
         if north:
             gx = 0.0
-            gy, gz, across, c = place(p, ky, kz, middle)
+            gy, gz, across, b = place(p, ky, kz, middle)
         else:
             cosine = math.sqrt(kx * kx + ky * ky)
-            level, gz, across, c = place(p, cosine, kz, middle)
+            level, gz, across, b = place(p, cosine, kz, middle)
             level = level / cosine if cosine > 0.0 else 0.0
             gx, gy = level * kx, level * ky
-        ix, iy, iz = earth * kx, earth * ky, earth * kz  # turn of the Earth in axes m
 
         # Gravity turns with n: its integral in axes 0 is T (g + t/2 x g + t/6 x (t x g)).
-        zx, zy, zz = 2.0 * hx + ix, 2.0 * hy + iy, 2.0 * hz + iz
+        zx, zy, zz = 2.0 * hx + earth * kx, 2.0 * hy + earth * ky, 2.0 * hz + earth * kz
         wx, wy, wz = cross(zx, zy, zz, gx, gy, gz)
         yx, yy, yz = cross(zx, zy, zz, wx, wy, wz)
         ux = ux + T * (gx + 0.5 * (wx + third * yx))
@@ -153,36 +188,38 @@ def update(p, T, scrolling, north, held, every, first, turn, count, carry, state
         else:
             sx, sy, sz = half * ux, half * uy, half * uz
         # Coriolis: in axes that do not turn v' = f + g - omega_ie x v, and relative to e the way lags by as much again.
+        jx, jy, jz = p[3] * ax, p[3] * ay, p[3] * az
         rx, ry, rz = T * vx + sx, T * vy + sy, T * vz + sz
         wx, wy, wz = cross(jx, jy, jz, mx, my, mz)
         wx, wy, wz = cross(jx, jy, jz, rx - T * wx, ry - T * wy, rz - T * wz)
         vx, vy, vz = vx + (ux - wx), vy + (uy - wy), vz + (uz - wz)
         rx, ry, rz = rx - T * wx, ry - T * wy, rz - T * wz
-        # Into axes m.
-        wx, wy, wz = cross(hx, hy, hz, rx, ry, rz)
-        yx, yy, yz = cross(hx, hy, hz, wx, wy, wz)
-        rx, ry, rz = rx - (wx - 0.5 * yx), ry - (wy - 0.5 * yy), rz - (wz - 0.5 * yz)
 
         # The frame at the end, and velocity and attitude in its axes.
-        hx, hy, hz = level_turn(north, across, c, kx, ky, kz, rx, ry)
-        if north and not (-LARGEST_STEP * ky < hy < LARGEST_STEP * ky):
-            return u
         f0, f1, f2, f3 = unit_frame(north, f0, f1, f2, f3)
-        f0, f1, f2, f3, ew, ex, ey, ez = turned_frame(north, f0, f1, f2, f3, hx, hy, hz, ky)
-        zx, zy, zz = hx + ix, hy + iy, hz + iz
-        w, x, y, z = small_turn(-zx, -zy, -zz)
+        if north:
+            f0, f1, f2, f3, lift, w, x, y, z, step = north_step(
+                p, across, b, h, f0, f1, f2, f3, ay, az, ky, earth, rx, ry, rz
+            )
+            if step < -LARGEST_STEP or step > LARGEST_STEP:  # not a number goes on, for the caller to find
+                return u
+        else:
+            f0, f1, f2, f3, lift, w, x, y, z = wander_step(
+                across, b, f0, f1, f2, f3, kx, ky, kz, earth, hx, hy, rx, ry, rz
+            )
+        ew, ex, ey, ez = attitude_of(north, f0, f1, f2, f3)
         vx, vy, vz = rotate(w, x, y, z, vx, vy, vz)
         if held:
             vz = 0.0
         else:
-            h = h + rz
+            h = h + lift
         scale = 1.5 - 0.5 * ((qw * qw + qx * qx) + (qy * qy + qz * qz))
         if every > 1:
-            tx, ty, tz = tx + zx, ty + zy, tz + zz
+            late = multiply(w, x, y, z, late[0], late[1], late[2], late[3])
             w, x, y, z = 1.0, 0.0, 0.0, 0.0
             if (first + u + 1) % every == 0:
-                w, x, y, z = small_turn(-tx, -ty, -tz)
-                tx, ty, tz = 0.0, 0.0, 0.0
+                w, x, y, z = late
+                late = (1.0, 0.0, 0.0, 0.0)
         w, x, y, z = multiply(w, x, y, z, scale * qw, scale * qx, scale * qy, scale * qz)
         qw, qx, qy, qz = multiply(w, x, y, z, turn[0, u], turn[1, u], turn[2, u], turn[3, u])
 
@@ -194,8 +231,8 @@ def update(p, T, scrolling, north, held, every, first, turn, count, carry, state
     carry[4], carry[5], carry[6], carry[7] = f0, f1, f2, f3
     carry[8], carry[9], carry[10], carry[11] = vx, vy, vz, h
     carry[12], carry[13], carry[14] = gx, gy, gz
-    carry[15], carry[16] = across, c
-    carry[17], carry[18], carry[19] = tx, ty, tz
+    carry[15], carry[16] = across, b
+    carry[17], carry[18], carry[19], carry[20] = late
     return count
 
 

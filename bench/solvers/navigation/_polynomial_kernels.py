@@ -11,10 +11,23 @@ from bench._compensated_kernels import two_sum
 from bench.earth_kernels import gravitation
 from bench.jit import njit
 from bench.rotation_kernels import rotate
-from bench.solvers.attitude._taylor_kernels import LANES, clear, count_terms, fit
+from bench.solvers.attitude._taylor_kernels import LANES, clear, count_terms, fit, quaternion_of, turn
 from bench.solvers.navigation._inertial_kernels import earth_fixed, earth_turn, held
 
+FARTHEST = 8.0  # rad, of all |w_m|/(m+1) together: the terms grow to its exponential before they cancel
 SWEEPS = 2  # of gravitation and position: each makes the error of the first guess about T^2 g/r, 1e-8, times smaller
+
+
+@njit
+def first_far(sizes, lanes):
+    """Return the first lane with sum_m |w_m|/(m+1) above FARTHEST, sizes (N, lanes) being |w_m|; else `lanes`."""
+    for lane in range(lanes):
+        total = 0.0
+        for m in range(sizes.shape[0]):
+            total += sizes[m, lane] / (m + 1)
+        if not total < FARTHEST:
+            return lane
+    return lanes
 
 
 @njit
@@ -59,53 +72,79 @@ def force_sums(C, terms, f, weights, lanes, c, sums):
 
 
 @njit
-def from_start(C, terms, lanes, sums, D):
-    """Turn sums (rows, 3, lanes) from the axes half-way into those at the start, u = -1: by C(-1) transposed."""
-    clear(D, lanes)
-    for k in range(terms, -1, -1):
+def ends(C, terms, lanes, start, end):
+    """Fill start and end (9, lanes) with C(-1) - I and C(1) - I."""
+    clear(start, lanes)
+    clear(end, lanes)
+    for k in range(terms, 0, -1):
         sign = -1.0 if k % 2 else 1.0
         for i in range(9):
             for lane in range(lanes):
-                D[i, lane] += sign * C[k, i, lane]
-    for row in range(sums.shape[0]):
-        for lane in range(lanes):
-            x, y, z = sums[row, 0, lane], sums[row, 1, lane], sums[row, 2, lane]
-            for i in range(3):
-                sums[row, i, lane] = D[i, lane] * x + D[3 + i, lane] * y + D[6 + i, lane] * z
+                start[i, lane] += sign * C[k, i, lane]
+                end[i, lane] += C[k, i, lane]
 
 
 @njit
-def force_integrals(G, factor, weights, dtheta, dvel, starts, integrals):
-    """Fill integrals (u, rows, 3) with the integrals of f over updates, in their first axes; return how many it did.
+def turns(start, end, lanes, E, q, delta):
+    """Fill delta (4, lanes) with the quaternion, less 1, of the turn C(-1)^T C(1); E (9,) and q (4,) are scratch.
 
-    G is a table of `_rate_fit.difference_tables`, centred; weights (rows, k) are those of c_k in each integral. An
-    update whose series needs more than len(factor) terms ends the work.
+    The entries off the diagonal never meet a 1, and keep the digits of a small turn.
+    """
+    for lane in range(lanes):
+        for i in range(3):
+            for j in range(3):
+                total = end[3 * i + j, lane] + start[3 * j + i, lane]
+                for k in range(3):
+                    total += start[3 * k + i, lane] * end[3 * k + j, lane]
+                E[3 * i + j] = total
+        for i in range(0, 9, 4):
+            E[i] += 1.0
+        quaternion_of(E, q)
+        delta[0, lane], delta[1, lane], delta[2, lane], delta[3, lane] = q[0] - 1.0, q[1], q[2], q[3]
+
+
+@njit
+def from_start(start, lanes, sums):
+    """Turn sums (rows, 3, lanes) from the axes half-way into those at the start, by C(-1) transposed."""
+    for row in range(sums.shape[0]):
+        for lane in range(lanes):
+            x, y, z = sums[row, 0, lane], sums[row, 1, lane], sums[row, 2, lane]
+            sums[row, 0, lane] = x + (start[0, lane] * x + start[3, lane] * y + start[6, lane] * z)
+            sums[row, 1, lane] = y + (start[1, lane] * x + start[4, lane] * y + start[7, lane] * z)
+            sums[row, 2, lane] = z + (start[2, lane] * x + start[5, lane] * y + start[8, lane] * z)
+
+
+def body_series(G, factor, weights, dtheta, dvel, starts, attitude, integrals, q_ib):
+    """Fill q_ib (u, 4) with the attitude after updates, and integrals (u, rows, 3) with those of f in their first axes.
+
+    G is a table of `_rate_fit.difference_tables`, centred; weights (rows, k) are those of c_k in each integral;
+    attitude (8,) is the running one of `turn`. Returns how many updates it did: the series of the next one would lose
+    its digits, or needs more than len(factor) terms. Not a kernel itself: as one, it takes three times as long to
+    compile.
     """
     N, K, rows = G.shape[1], len(factor), weights.shape[0]
-    number = dtheta.dtype
-    d, w, f = np.empty((N, 3, LANES), number), np.empty((N, 3, LANES), number), np.empty((N, 3, LANES), number)
-    sizes, a, C = np.empty((N, LANES), number), np.empty((K + 1, LANES), number), np.empty((K + 1, 9, LANES), number)
-    D, c, sums = np.empty((9, LANES), number), np.empty((3, LANES), number), np.empty((rows, 3, LANES), number)
+    d, w, f = np.empty((N, 3, LANES)), np.empty((N, 3, LANES)), np.empty((N, 3, LANES))
+    sizes, a, C = np.empty((N, LANES)), np.empty((K + 1, LANES)), np.empty((K + 1, 9, LANES))
+    c, sums, delta = np.empty((3, LANES)), np.empty((rows, 3, LANES)), np.empty((4, LANES))
+    start, end, E, q = np.empty((9, LANES)), np.empty((9, LANES)), np.empty(9), np.empty(4)
     quiet, last = np.empty(LANES, np.int64), np.empty(LANES, np.int64)
-    for i in range(9):
-        for lane in range(LANES):
-            C[0, i, lane] = 0.0 if i % 4 else 1.0
+    C[0], C[0, ::4] = 0.0, 1.0
     for begin in range(0, len(starts), LANES):
-        end = min(begin + LANES, len(starts))
-        lanes = end - begin
-        fit(G, 0, dtheta, starts, begin, end, d, w)
-        fit(G, 0, dvel, starts, begin, end, d, f)
+        stop = min(begin + LANES, len(starts))
+        lanes = stop - begin
+        fit(G, 0, dtheta, starts, begin, stop, d, w)
+        fit(G, 0, dvel, starts, begin, stop, d, f)
         terms = count_terms(w, lanes, factor, True, sizes, a, quiet, last)
-        for lane in range(lanes):
-            if last[lane] == K:
-                return begin + lane
-        matrix_series(w, factor, last, terms, lanes, C, D)
+        far = first_far(sizes, lanes)
+        if far < lanes or terms == K:
+            return begin + min([far, *np.flatnonzero(last[:lanes] == K)])
+        matrix_series(w, factor, last, terms, lanes, C, start)
         force_sums(C, terms, f, weights, lanes, c, sums)
-        from_start(C, terms, lanes, sums, D)
-        for lane in range(lanes):
-            for row in range(rows):
-                for i in range(3):
-                    integrals[begin + lane, row, i] = sums[row, i, lane]
+        ends(C, terms, lanes, start, end)
+        turns(start, end, lanes, E, q, delta)
+        from_start(start, lanes, sums)
+        turn(attitude, delta, begin, stop, q_ib)
+        integrals[begin:stop] = sums[:, :, :lanes].transpose(2, 0, 1)
     return len(starts)
 
 
@@ -113,12 +152,10 @@ def force_integrals(G, factor, weights, dtheta, dvel, starts, integrals):
 def gravitate(p, T, nodes, double, rx, ry, rz, vx, vy, vz, path, G):
     """Fill G (n, 3) with the gravitation at the nodes of an update that begins at r with v.
 
-    path (n, 3): what f adds to a straight path there; T^2 sum_j double[i, j] G_j is what G adds up to node i.
+    path (n, 3): what f adds to a straight path there; T^2 sum_j double[i, j] G_j is what G adds up to node i. G holds
+    a first guess.
     """
     n = len(nodes)
-    x, y, z = gravitation(p, rx, ry, rz)
-    for j in range(n):
-        G[j, 0], G[j, 1], G[j, 2] = x, y, z
     for _ in range(SWEEPS):
         for i in range(n):
             s = T * nodes[i]
@@ -131,23 +168,27 @@ def gravitate(p, T, nodes, double, rx, ry, rz, vx, vy, vz, path, G):
 
 @njit
 def integrate(p, T, nodes, mean, double, holds, q_ib, integrals, first, carry, out):
-    """Do len(out) updates; q_ib (u, 4) is the attitude after them, integrals (u, 2 + n, 3) those of `force_integrals`.
+    """Do len(out) updates; q_ib (u, 4) is the attitude after them, integrals (u, 2 + n, 3) those of `body_series`.
 
     mean (2, n): weights of G at the nodes in its integral over T and its double integral over T^2. carry: the attitude
-    before (4), v_i (3), what rounding took from it (3), r_i (3), what rounding took from that (3), the height held.
+    before (4), v_i (3), what rounding took from it (3), r_i (3), what rounding took from that (3), the last G (3), the
+    height held.
     """
     n, rate = len(nodes), p[3]
     path, G = np.empty((n, 3), out.dtype), np.empty((n, 3), out.dtype)
+    G[n - 1, 0], G[n - 1, 1], G[n - 1, 2] = carry[16], carry[17], carry[18]
     w, x, y, z = carry[0], carry[1], carry[2], carry[3]
     vx, vy, vz, wx, wy, wz = carry[4], carry[5], carry[6], carry[7], carry[8], carry[9]
     rx, ry, rz, lx, ly, lz = carry[10], carry[11], carry[12], carry[13], carry[14], carry[15]
-    height = carry[16]
+    height = carry[19]
     for k in range(len(out)):
         fx, fy, fz = rotate(w, x, y, z, integrals[k, 0, 0], integrals[k, 0, 1], integrals[k, 0, 2])
         sx, sy, sz = rotate(w, x, y, z, integrals[k, 1, 0], integrals[k, 1, 1], integrals[k, 1, 2])
         for i in range(n):
             one = integrals[k, 2 + i]
             path[i, 0], path[i, 1], path[i, 2] = rotate(w, x, y, z, one[0], one[1], one[2])
+        for i in range(n - 1):
+            G[i, 0], G[i, 1], G[i, 2] = G[n - 1, 0], G[n - 1, 1], G[n - 1, 2]
         gravitate(p, T, nodes, double, rx, ry, rz, vx, vy, vz, path, G)
         sx, sy, sz = sx + T * vx, sy + T * vy, sz + T * vz
         for j in range(n):
@@ -172,3 +213,4 @@ def integrate(p, T, nodes, mean, double, holds, q_ib, integrals, first, carry, o
     carry[0], carry[1], carry[2], carry[3] = w, x, y, z
     carry[4], carry[5], carry[6], carry[7], carry[8], carry[9] = vx, vy, vz, wx, wy, wz
     carry[10], carry[11], carry[12], carry[13], carry[14], carry[15] = rx, ry, rz, lx, ly, lz
+    carry[16], carry[17], carry[18] = G[n - 1, 0], G[n - 1, 1], G[n - 1, 2]

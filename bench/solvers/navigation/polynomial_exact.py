@@ -14,10 +14,10 @@ from bench.solvers.attitude._rate_fit import difference_tables
 from bench.solvers.navigation import NavigationSolver
 from bench.trajectory import NavigationInitial
 
-MOST_TERMS = 60  # a power series that needs more has lost four digits to rounding, and more from there
-NODES = 3  # of gravitation in an update
+MOST_TERMS = 300  # of the power series: noise makes the high coefficients of the fit large, and needs many
+NODES = 4  # of gravitation in an update
 LONGEST = 12  # increments
-MOTION, HISTORY = 17, 25  # in the running state: after the motion the attitude and its rounding, then past increments
+MOTION, HISTORY = 20, 28  # in the running state: after the motion the attitude and its rounding, then past increments
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class PolynomialExact(NavigationSolver):
 
     Rate and force over an update are the polynomials that reproduce the increments of a window. The series of
     C' = C [omega x] and of c = C f over -1 <= u <= 1 follow by recursion, and f adds sum c_k (1 + (-1)^k)/(k + 1) to
-    the velocity and the like to the position; gravitation is taken at three Gauss nodes of the path, in two sweeps.
+    the velocity and the like to the position; gravitation is taken at four Gauss nodes of the path, in two sweeps.
     All is in i, sums are compensated for rounding: only the fit limits the accuracy. A reference for the others.
 
     Parameters
@@ -38,15 +38,15 @@ class PolynomialExact(NavigationSolver):
     window : int, optional
         W, increments the polynomials are fitted to, the update's own and those before: N to 12, by default N + 2.
         At the start, where there are fewer, the update's own. On smooth motions two borrowed increments make the
-        error some 30 times smaller; noise and steps are amplified, as by any fit of high degree.
+        error some 100 times smaller; noise and steps are amplified, as by any fit of high degree.
 
     Raises
     ------
     InputError
         If an option is out of range.
     AccuracyError
-        In use, if the rate over an update turns so far, or noise makes its polynomial so large (about 10 rad), that
-        a power series would lose its digits.
+        In use, if the rate over an update turns so far, or noise makes its polynomial so large, that a power series
+        would lose its digits: 16 rad an update, or noise of some 0.02 rad an increment for N = 6.
 
     Notes
     -----
@@ -93,7 +93,7 @@ class PolynomialExact(NavigationSolver):
     def _carry(self, earth: Earth, dt: float, initial: NavigationInitial, row: Array) -> Array:
         q, v_e, r = row[:4], row[4:7], row[7:]
         v = v_e + cross(earth.omega_ie, r)
-        motion = np.concatenate([q, v, np.zeros(3), r, np.zeros(3), [initial.height]])
+        motion = np.concatenate([q, v, np.zeros(3), r, np.zeros(3), earth.gravitation(r), [initial.height]])
         return np.concatenate([motion, q, np.zeros(4), np.zeros(6 * self._borrowed)])
 
     def _update(self, constants: tuple[Any, ...], increments: Array, first: int, carry: Array, out: Array) -> None:
@@ -109,22 +109,18 @@ class PolynomialExact(NavigationSolver):
             self._integrate(wide, rest, block[N * alone :], first + alone, carry, out[alone:])
 
     def _integrate(self, fit: Array, constants: list[Any], block: Array, first: int, carry: Array, out: Array) -> None:
-        from bench.solvers.attitude._taylor_kernels import taylor_quaternion
-        from bench.solvers.navigation._polynomial_kernels import force_integrals, integrate
+        from bench.solvers.navigation._polynomial_kernels import body_series, integrate
 
         factor, sums, p, T, nodes, mean, double = constants
         dtheta, dvel = block[:, :3].copy(), block[:, 3:].copy()
-        starts = np.arange(len(out)) * self.samples
-        integrals = np.empty((len(out), len(sums), 3))
-        done = force_integrals(fit, factor, sums, dtheta, dvel, starts, integrals)
+        starts, attitude = np.arange(len(out)) * self.samples, carry[MOTION:HISTORY]
+        integrals, q_ib = np.empty((len(out), len(sums), 3)), np.empty((len(out), 4))
+        done = body_series(fit, factor, sums, dtheta, dvel, starts, attitude, integrals, q_ib)
         if done < len(out):
             raise AccuracyError(
                 f"{self.name}: the increments of update {first + done} turn too far or too irregularly for a power "
-                f"series of {MOST_TERMS} terms: take fewer samples per update"
+                f"series: take fewer samples or a shorter window"
             )
-        q_ib, attitude = np.empty((len(out), 4)), carry[MOTION:HISTORY]
-        offsets, largest = np.zeros_like(starts), np.zeros(fit.shape[1])
-        taylor_quaternion(fit, 0.5 * factor, True, True, dtheta, starts, offsets, largest, attitude, q_ib)
         holds = self.height == "held"
         integrate(p, T, nodes, mean, double, holds, q_ib, integrals, first, carry, out)
 

@@ -1,0 +1,261 @@
+"""The work of `damping-external-velocity`: options, the ship, the free INS on the rig, and the filters behind it."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from bench.campaign import Item
+from bench.earth import SPHERE
+from bench.errors import Array, InputError, require_array, require_choice, require_flag, require_integer, require_scalar
+from bench.evaluation import nees
+from bench.motion.manoeuvres import Accelerate, Straight
+from bench.motion.vehicle import Vehicle
+from bench.rotation import quat_from_rotvec, quat_multiply
+from bench.solvers.damping import STATES, DampingFilter, DampingModel, DampingSolution, InsSamples, error_states
+from bench.solvers.damping.bias_augmented import BiasAugmented
+from bench.solvers.damping.double_filter import DoubleFilter
+from bench.table import Table
+from bench.trajectory import NavigationInitial, Trajectory
+from bench.units import DEG
+
+HOUR = 3600.0
+STARTED, UNDER_WAY = 1000.0, 1100.0  # s: rest until, acceleration until
+VELOCITY = (10.0, 8.0)  # m/s, east and north
+SWAY = (1 * DEG, 2 * DEG, 5 * DEG)  # heading, pitch, roll
+EVERY = 120  # samples of the INS (s) from one kept row to the next
+FREE, FIRST, SECOND, FUSION, AUGMENTED = "free INS", "filter 1", "filter 2", "fusion", "15 states"
+FILTERS = (FIRST, SECOND, FUSION, AUGMENTED)
+ERRORS = tuple(f"e_{name}" for name in STATES)
+SIGMAS = tuple(f"s_{name}" for name in STATES)
+WEIGHTS = tuple(f"w_{name}" for name in STATES[:13])
+COLUMNS = ("part", "case", "name", "t_h", "reference_m_per_s", "value", "nees", "nis", "gamma")
+COLUMNS += (*ERRORS, *SIGMAS, *WEIGHTS)
+Part = Literal["ins", "fast", "scan", "consistency", "undamped"]
+
+
+@dataclass(frozen=True)
+class Options:
+    """Options of the experiment; the defaults are the conditions at which claims are judged.
+
+    Attributes
+    ----------
+    duration : float
+        Length of the run, h.
+    rate : float
+        Rate of the inertial sensors, Hz.
+    reference_errors : tuple of float
+        Constant errors of the reference velocity, the same east and north, m/s; the figures show the middle one.
+    latitude : float
+        Where the ship lies at the start, deg.
+    heading : str
+        Where the bow points all the time: "north", or "course" for the direction of travel.
+    tau : float
+        Correlation time of the sensor errors in the filters, s.
+    reference_noise : float
+        White noise of the reference velocity, m/s for each value, one a second.
+    signs : str
+        13 signs of initial errors and sensor errors in the order of the error states: dv_E dv_N dL dlambda phi_E phi_N
+        phi_U nabla_x nabla_y nabla_z eps_x eps_y eps_z; eps is minus the gyro's drift.
+    mean : str
+        Xbar of the fusion: "cumulative", or "window" of an hour.
+    sway : bool
+        Roll (5 deg, 10 s), pitch (2 deg, 8 s) and heading (1 deg, 12 s) of the ship in waves.
+    latitudes : tuple of float
+        Start latitudes over which the tables are scanned, deg.
+    taus : tuple of float
+        Correlation times over which the tables are scanned, s.
+    trials : int
+        Monte Carlo trials for the consistency of the filters.
+    undamped : float
+        Length of the undamped runs at rest, from which the periods are found, h.
+    """
+
+    duration: float = 24.0
+    rate: float = 100.0
+    reference_errors: tuple[float, ...] = (-0.1, -0.2, -0.3, -0.4, -0.5)
+    latitude: float = 48.0
+    heading: str = "north"
+    tau: float = 3600.0
+    reference_noise: float = 0.05
+    signs: str = "+++++++++++++"
+    mean: str = "cumulative"
+    sway: bool = False
+    latitudes: tuple[float, ...] = (40.0, 44.0, 48.0, 52.0, 56.0)
+    taus: tuple[float, ...] = (1000.0, 3600.0)
+    trials: int = 20
+    undamped: float = 96.0
+
+    def __post_init__(self) -> None:
+        for name, least in (("duration", 0.5), ("undamped", 6.0), ("reference_noise", 0.0), ("tau", 200.0)):
+            require_scalar(name, getattr(self, name), minimum=least)
+        seconds = self.duration * HOUR
+        if abs(seconds - round(seconds)) > 1e-6 or self.undamped * HOUR % 1:
+            raise InputError(f"duration and undamped must be whole seconds, got {self.duration}, {self.undamped} h")
+        rate = require_scalar("rate", self.rate, minimum=2.0)
+        if rate % 2:
+            raise InputError(f"rate must be an even number of Hz, got {rate:g}")
+        for name in ("reference_errors", "latitudes", "taus"):
+            values = tuple(float(value) for value in require_array(name, getattr(self, name), (None,)))
+            if not values or len(set(values)) < len(values):
+                raise InputError(f"{name} must be different numbers, got {values}")
+            object.__setattr__(self, name, values)
+        if max(abs(latitude) for latitude in (self.latitude, *self.latitudes)) > 70:
+            raise InputError(f"latitudes must be within +-70 deg, got {(self.latitude, *self.latitudes)}")
+        if min(self.taus) < 200:
+            raise InputError(f"taus must be at least 200 s, got {self.taus}")
+        require_choice("heading", self.heading, ("north", "course"))
+        require_choice("mean", self.mean, ("cumulative", "window"))
+        require_flag("sway", self.sway)
+        require_integer("trials", self.trials, minimum=2)
+        if len(self.signs) != 13 or set(self.signs) - set("+-"):
+            raise InputError(f"signs must be 13 characters + or -, got {self.signs!r}")
+
+    @property
+    def model(self) -> DampingModel:
+        """What the filters believe."""
+        return DampingModel.published(self.tau)
+
+    @property
+    def focus(self) -> float:
+        """The reference error that figures and recording show."""
+        return self.reference_errors[len(self.reference_errors) // 2]
+
+    @property
+    def initial(self) -> Array:
+        """True errors at the start: the published ones with their signs, shape (13,)."""
+        return DampingModel().initial_std * signed(self.signs)
+
+
+@dataclass(frozen=True)
+class Work:
+    """One item: a part, and the index of its latitude (scan) or its first trial (consistency)."""
+
+    options: Options
+    seed: int
+    part: Part
+    index: int = 0
+
+
+def signed(signs: str) -> Array:
+    """Return +1 and -1 of a text of signs."""
+    return np.array([1.0 if sign == "+" else -1.0 for sign in signs])
+
+
+TRIALS_AN_ITEM = 5
+
+
+def items(options: Options, seed: int) -> list[Item]:
+    """Return the INS on the rig first (the longest), then scans and trials of the fast mode."""
+    work = [Work(options, seed, "ins")]
+    work += [Work(options, seed, "scan", k) for k in range(len(options.latitudes))]
+    work += [Work(options, seed, "consistency", k) for k in range(0, options.trials, TRIALS_AN_ITEM)]
+    work += [Work(options, seed, "undamped"), Work(options, seed, "fast")]
+    return [Item(f"{k:02d}-{one.part}", one) for k, one in enumerate(work)]
+
+
+def measure(work: Work) -> Table:
+    """Do one item."""
+    from bench.experiments._damping_consistency import measure_consistency
+    from bench.experiments._damping_scan import measure_scan
+    from bench.experiments._damping_undamped import measure_undamped
+
+    parts = {
+        "ins": measure_ins,
+        "fast": measure_fast,
+        "scan": measure_scan,
+        "consistency": measure_consistency,
+        "undamped": measure_undamped,
+    }
+    return parts[work.part](work)
+
+
+def ship(options: Options, latitude: float | None = None) -> Vehicle:
+    """Return the published motion: rest, acceleration, constant velocity, on a sphere."""
+    speed, course = float(np.hypot(*VELOCITY)), float(np.arctan2(*VELOCITY))
+    # Beyond the end, so that rounding of times does not matter.
+    rest = max(options.duration * HOUR - UNDER_WAY, 1.0) + 10.0
+    return Vehicle(
+        segments=(Straight(STARTED), Accelerate(UNDER_WAY - STARTED, speed, 10.0), Straight(rest)),
+        latitude=(options.latitude if latitude is None else latitude) * DEG,
+        longitude=126 * DEG,
+        height=0.0,
+        speed=0.0,
+        heading=course,
+        follow=False,
+        attitude=(-course if options.heading == "course" else 0.0, 0.0, 0.0),
+        swing=SWAY if options.sway else (0.0, 0.0, 0.0),
+        swing_frequency=tuple(2 * np.pi / period for period in (12.0, 8.0, 10.0)),
+        earth=SPHERE,
+    )
+
+
+def filters(options: Options, every: int = EVERY) -> tuple[DampingFilter, DampingFilter]:
+    """Return the double filter (with filters 1 and 2 as its parts) and the one of 15 states."""
+    double = DoubleFilter(model=options.model, covariance_every=every, mean=options.mean)
+    return double, BiasAugmented(model=options.model, covariance_every=every)
+
+
+def disturbed_initial(true: NavigationInitial, errors: Array) -> NavigationInitial:
+    """Return what the INS is told at the start: the truth with errors dv, dL, dlambda, phi (7,)."""
+    q_nb = quat_multiply(quat_from_rotvec(-errors[4:7]), true.q_nb)
+    v_n = true.v_n + [*errors[:2], 0.0]
+    place = {"latitude": true.latitude + errors[2], "longitude": true.longitude + errors[3], "height": true.height}
+    return NavigationInitial(q_nb / np.linalg.norm(q_nb), v_n, **place)
+
+
+def free_ins(
+    motion: Any, rate: float, duration: float, errors: Array, seed: int
+) -> Iterator[tuple[InsSamples, Trajectory]]:
+    """Yield the free INS on the rig's increments, hour by hour, once a second, with the true trajectory.
+
+    Parameters
+    ----------
+    motion : EarthMotion
+    rate : float, Hz
+    duration : float, s
+    errors : ndarray, shape (13,)
+        At the start; those of the sensors are the constant errors of grade "zhao", with these signs.
+    seed : int
+    """
+    from bench.imu import SensorErrors, TurnOnBias
+    from bench.rig import Rig
+    from bench.solvers import solver
+
+    sensors = {
+        "gyro": SensorErrors((TurnOnBias(value=tuple((-errors[10:]).tolist())),)),
+        "accelerometer": SensorErrors((TurnOnBias(value=tuple(errors[7:10].tolist())),)),
+    }
+    states = {
+        name: sensor.start(3, 1 / rate, "increments", seed=seed, sensor=k)
+        for k, (name, sensor) in enumerate(sensors.items())
+    }
+    navigation = solver("navigation", "navigation-frame", samples=2, height="held")
+    state = navigation.start(1 / rate, disturbed_initial(motion.navigation_initial(), errors), motion.earth)
+    first: Trajectory | None = _first_row(state, motion.earth)
+    previous = None
+    for increments in Rig.load("imu", threads=1).stream(motion, rate, duration, chunk=round(HOUR * rate)):
+        states["gyro"], dtheta_b = sensors["gyro"].advance(states["gyro"], increments.dtheta_b)
+        states["accelerometer"], dvel = sensors["accelerometer"].advance(states["accelerometer"], increments.dvel)
+        state, found = navigation.advance(state, dtheta_b, dvel)
+        samples = _each_second(found, round(rate) // 2, first)
+        first = None
+        ins = InsSamples.of(samples, previous)
+        previous = ins[-2:]
+        yield ins, motion.trajectory(ins.t)
+
+
+def _first_row(state: Any, earth: Any) -> Trajectory:
+    from bench.solvers.navigation import _first_row as row_of
+
+    raise NotImplementedError
+
+
+def _each_second(found: Trajectory, step: int, first: Trajectory | None) -> Trajectory:
+    rows = slice(step - 1, None, step)
+    columns = [found.t[rows], found.q_eb[rows], found.v_e[rows], found.r_e[rows]]
+    if first is not None:
+        parts = (first.t, first.q_eb, first.v_e, first.r_e)
+        columns = [np.concatenate(pair) for pair in zip(parts, columns, strict=True)]
+    return Trajectory(found.earth, *columns)
