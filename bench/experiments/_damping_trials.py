@@ -1,23 +1,19 @@
-"""The work of `damping-external-velocity`: options, the ship, the free INS on the rig, and the filters behind it."""
+"""The work of `damping-external-velocity`: options, the ship, the filters, and the pieces of work."""
 
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
 from bench.campaign import Item
 from bench.earth import SPHERE
 from bench.errors import Array, InputError, require_array, require_choice, require_flag, require_integer, require_scalar
-from bench.evaluation import nees
 from bench.motion.manoeuvres import Accelerate, Straight
 from bench.motion.vehicle import Vehicle
-from bench.rotation import quat_from_rotvec, quat_multiply
-from bench.solvers.damping import STATES, DampingFilter, DampingModel, DampingSolution, InsSamples, error_states
+from bench.solvers.damping import STATES, DampingFilter, DampingModel
 from bench.solvers.damping.bias_augmented import BiasAugmented
 from bench.solvers.damping.double_filter import DoubleFilter
 from bench.table import Table
-from bench.trajectory import NavigationInitial, Trajectory
 from bench.units import DEG
 
 HOUR = 3600.0
@@ -158,6 +154,7 @@ def items(options: Options, seed: int) -> list[Item]:
 def measure(work: Work) -> Table:
     """Do one item."""
     from bench.experiments._damping_consistency import measure_consistency
+    from bench.experiments._damping_runs import measure_fast, measure_ins
     from bench.experiments._damping_scan import measure_scan
     from bench.experiments._damping_undamped import measure_undamped
 
@@ -195,67 +192,3 @@ def filters(options: Options, every: int = EVERY) -> tuple[DampingFilter, Dampin
     """Return the double filter (with filters 1 and 2 as its parts) and the one of 15 states."""
     double = DoubleFilter(model=options.model, covariance_every=every, mean=options.mean)
     return double, BiasAugmented(model=options.model, covariance_every=every)
-
-
-def disturbed_initial(true: NavigationInitial, errors: Array) -> NavigationInitial:
-    """Return what the INS is told at the start: the truth with errors dv, dL, dlambda, phi (7,)."""
-    q_nb = quat_multiply(quat_from_rotvec(-errors[4:7]), true.q_nb)
-    v_n = true.v_n + [*errors[:2], 0.0]
-    place = {"latitude": true.latitude + errors[2], "longitude": true.longitude + errors[3], "height": true.height}
-    return NavigationInitial(q_nb / np.linalg.norm(q_nb), v_n, **place)
-
-
-def free_ins(
-    motion: Any, rate: float, duration: float, errors: Array, seed: int
-) -> Iterator[tuple[InsSamples, Trajectory]]:
-    """Yield the free INS on the rig's increments, hour by hour, once a second, with the true trajectory.
-
-    Parameters
-    ----------
-    motion : EarthMotion
-    rate : float, Hz
-    duration : float, s
-    errors : ndarray, shape (13,)
-        At the start; those of the sensors are the constant errors of grade "zhao", with these signs.
-    seed : int
-    """
-    from bench.imu import SensorErrors, TurnOnBias
-    from bench.rig import Rig
-    from bench.solvers import solver
-
-    sensors = {
-        "gyro": SensorErrors((TurnOnBias(value=tuple((-errors[10:]).tolist())),)),
-        "accelerometer": SensorErrors((TurnOnBias(value=tuple(errors[7:10].tolist())),)),
-    }
-    states = {
-        name: sensor.start(3, 1 / rate, "increments", seed=seed, sensor=k)
-        for k, (name, sensor) in enumerate(sensors.items())
-    }
-    navigation = solver("navigation", "navigation-frame", samples=2, height="held")
-    state = navigation.start(1 / rate, disturbed_initial(motion.navigation_initial(), errors), motion.earth)
-    first: Trajectory | None = _first_row(state, motion.earth)
-    previous = None
-    for increments in Rig.load("imu", threads=1).stream(motion, rate, duration, chunk=round(HOUR * rate)):
-        states["gyro"], dtheta_b = sensors["gyro"].advance(states["gyro"], increments.dtheta_b)
-        states["accelerometer"], dvel = sensors["accelerometer"].advance(states["accelerometer"], increments.dvel)
-        state, found = navigation.advance(state, dtheta_b, dvel)
-        samples = _each_second(found, round(rate) // 2, first)
-        first = None
-        ins = InsSamples.of(samples, previous)
-        previous = ins[-2:]
-        yield ins, motion.trajectory(ins.t)
-
-
-def _first_row(state: Any, earth: Any) -> Trajectory:
-    from bench.solvers.navigation import _first_row as row_of
-
-    raise NotImplementedError
-
-
-def _each_second(found: Trajectory, step: int, first: Trajectory | None) -> Trajectory:
-    rows = slice(step - 1, None, step)
-    columns = [found.t[rows], found.q_eb[rows], found.v_e[rows], found.r_e[rows]]
-    if first is not None:
-        parts = (first.t, first.q_eb, first.v_e, first.r_e)
-        columns = [np.concatenate(pair) for pair in zip(parts, columns, strict=True)]
-    return Trajectory(found.earth, *columns)
