@@ -10,6 +10,7 @@ import math
 from bench.jit import njit
 
 HALF_TURN, FULL_TURN = math.pi, 2.0 * math.pi
+CAP = 0.01  # cosine of the middle angle: so near to its pole a set keeps no branch, see `track`
 POLE = 1e-15  # as in rotation.euler_from_quat: no direction is left below it
 
 
@@ -68,8 +69,14 @@ def next_side(side, sine_pitch, enter, leave):
 
 @njit
 def track(q, enter, middle, leave, forward, reverse, flag):
-    """Fill forward and reverse (n, 3), as yaw, middle and inner angle, and flag (n,) along the attitudes q (n, 4)."""
+    """Fill forward and reverse (n, 3), as yaw, middle and inner angle, and flag (n,) along the attitudes q (n, 4).
+
+    The branch is that nearer to the previous angles, but within half a degree of the pole to those at which that cap
+    was entered: there samples may step over the pole on the way out and walk round it on the way back, and the branch
+    would not come back with the body.
+    """
     f, r = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    f0, r0 = f, r
     for k in range(len(q)):
         w, x, y, z = q[k, 0], q[k, 1], q[k, 2], q[k, 3]
         sine = 2.0 * (w * x + y * z)
@@ -77,9 +84,13 @@ def track(q, enter, middle, leave, forward, reverse, flag):
             f, r = angles(1.0, w, x, y, z, 0.0), angles(-1.0, w, x, y, z, 0.0)
             side = -1.0 if abs(sine) > middle else 1.0
         else:
-            f = nearest_angles(1.0, w, x, y, z, f[0], f[1], f[2])
-            r = nearest_angles(-1.0, w, x, y, z, r[0], r[1], r[2])
+            f = nearest_angles(1.0, w, x, y, z, f0[0], f0[1], f0[2])
+            r = nearest_angles(-1.0, w, x, y, z, r0[0], r0[1], r0[2])
             side = next_side(side, sine, enter, leave)
+        if k == 0 or abs(math.cos(f[1])) > CAP:
+            f0 = f
+        if k == 0 or abs(math.cos(r[1])) > CAP:
+            r0 = r
         forward[k, 0], forward[k, 1], forward[k, 2] = f
         reverse[k, 0], reverse[k, 1], reverse[k, 2] = r
         flag[k] = side

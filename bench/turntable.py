@@ -6,6 +6,7 @@ laboratory at rest, without the torques of the Earth's rotation, a millionth of 
 motion then turns with the Earth.
 """
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,7 +24,7 @@ from bench.units import DEG
 
 AXES = ("heading", "pitch", "roll")  # joints, from the outer one to the inner one
 PIECE = 50_000  # steps in memory at a time
-STEP = 1e-3  # s
+LONGEST_STEP = 2e-3  # s, for rates of up to 1 deg/s
 TONES = 16  # of the fluctuation of each rate
 SLOWEST, FASTEST = 0.02, 0.5  # Hz, of these tones: what a hand on a dial does
 
@@ -81,6 +82,12 @@ class Profile:
             out[:, k] = np.sign(rate) * (limit - np.abs(2 * limit - way % (4 * limit))) if rate else start
             out[:, k] += self._fluctuation(k, moving)
         return out
+
+    @property
+    def longest_step(self) -> float:
+        """Step of the dynamics, s, whose half changes the angles by less than a microradian."""
+        fastest = max(abs(rate) for rate in self.rate)
+        return LONGEST_STEP * min(1.0, math.sqrt(1 * DEG / fastest) if fastest else 1.0)
 
     def _fluctuation(self, k: int, moving: Array) -> Array | float:
         """Return the integral of the rate's fluctuation over the time since the axis began to move, rad."""
@@ -156,15 +163,17 @@ class Turntable:
         if self.model.nu != 3 or tuple(self.model.actuator_trnid[:, 0]) != (0, 1, 2):
             raise InputError(f"model must have one actuator for each joint, in order, got {self.model.nu}")
         option = self._dynamics.opt
-        option.disableflags |= mujoco.mjtDisableBit.mjDSBL_SENSOR | mujoco.mjtDisableBit.mjDSBL_ISLAND
+        # What cannot go on shall be seen, not reset; sensors are read elsewhere; islands only cost time.
+        flags = mujoco.mjtDisableBit
+        option.disableflags |= flags.mjDSBL_AUTORESET | flags.mjDSBL_SENSOR | flags.mjDSBL_ISLAND
 
     def drive(
-        self, profile: Profile, duration: float, *, rate: float = 100.0, step: float = STEP, settle: float = 5.0
+        self, profile: Profile, duration: float, *, rate: float = 100.0, step: float | None = None, settle: float = 5.0
     ) -> TableRecording:
         """Return the motion that the axes make of a commanded profile.
 
         Fourth-order Runge-Kutta steps; the command of a step is that of its middle, and the whole is of second order in
-        the step.
+        the step, because of that and of the reversals, where the rate of the command and the friction jump.
 
         Parameters
         ----------
@@ -172,8 +181,9 @@ class Turntable:
         duration : float, s
         rate : float, Hz
             Of the records; the record interval is a whole number of steps, the duration of record intervals.
-        step : float, s
-            Of the dynamics.
+        step : float, s, optional
+            Of the dynamics. By default 2 ms for rates of up to 1 deg/s and shorter with the root of the rate beyond:
+            half of it changes the angles by less than 1 microradian.
         settle : float, s
             Time at the commanded start before t = 0, for the table to sink into its servos.
 
@@ -186,8 +196,12 @@ class Turntable:
         """
         if not isinstance(profile, Profile):
             raise InputError(f"profile must be a Profile, got {profile!r}")
-        step = require_scalar("step", step, positive=True)
-        every = _whole("1 / rate", 1.0 / require_scalar("rate", rate, positive=True), "steps", step)
+        rate = require_scalar("rate", rate, positive=True)
+        if step is None:
+            every = math.ceil(1.0 / (rate * profile.longest_step) - 1e-9)
+            step = 1.0 / (rate * every)
+        else:
+            every = _whole("1 / rate", 1.0 / rate, "steps", require_scalar("step", step, positive=True))
         records = _whole(
             "duration", require_scalar("duration", duration, positive=True), "record intervals", every * step
         )
@@ -212,8 +226,8 @@ class Turntable:
         buffer = np.empty((1, PIECE, state.shape[1]))
         with rollout.Rollout(nthread=0) as run:
             for begin in range(first, last, PIECE):
-                steps = np.arange(begin, min(begin + PIECE, last))
-                command = profile.angles((2 * steps + 1) * (0.5 * step))[np.newaxis]
+                steps = np.arange(begin, min(begin + PIECE, last), dtype=np.float64)
+                command = profile.angles((steps + 0.5) * step)[np.newaxis]
                 states = buffer[:, : len(steps)]
                 warm = data.qacc_warmstart[np.newaxis].copy()  # as if there were no pieces
                 run.rollout(self._dynamics, data, state, command, initial_warmstart=warm, state=states)

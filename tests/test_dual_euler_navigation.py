@@ -77,7 +77,7 @@ def test_the_order_is_that_of_the_navigation_frame():
 
 
 def test_bad_options_are_named():
-    with pytest.raises(bench.UnknownNameError, match="unknown azimuth 'south'.*valid: north, wander"):
+    with pytest.raises(bench.UnknownNameError, match=r"unknown azimuth 'south'.*valid: north, wander"):
         DualEuler(azimuth="south")
-    with pytest.raises(bench.InputError, match="hysteresis must be below pi/4 rad, got 0.8"):
+    with pytest.raises(bench.InputError, match=r"hysteresis must be below pi/4 rad, got 0\.8"):
         DualEuler(hysteresis=0.8)

@@ -190,8 +190,7 @@ class NavigationSolver(ABC):
         state, _ = self._advance(state, block, out)
         if not len(out):
             return state, None
-        t = (done + 1 + np.arange(len(out))) * (self.samples * state.dt)
-        return state, _trajectory(state.earth, t, out)
+        return state, self._solution(state, done + 1, [out[:, :4].copy(), out[:, 4:7].copy(), out[:, 7:].copy()])
 
     @final
     def solve(
@@ -250,7 +249,15 @@ class NavigationSolver(ABC):
                 require_array("dvel_b", dvel, (None, 3))
             state, rows = self._advance(state, block, out[: len(block) // N])
             _scatter(rows, columns, begin // N + 1)
-        return Trajectory(earth, np.arange(n // N + 1) * (N * state.dt), *columns)
+        return self._solution(state, 0, columns)
+
+    def _solution(self, state: NavigationState, first: int, columns: list[Array]) -> Trajectory:
+        """Return attitude, velocity and position at the updates from number `first` on."""
+        t = (first + np.arange(len(columns[0]))) * (self.samples * state.dt)
+        try:
+            return Trajectory(state.earth, t, *columns)
+        except InputError as error:  # not of the caller's making
+            raise AccuracyError(f"{self.name} diverges, the increments are too large for it: {error}") from error
 
     def _advance(self, state: NavigationState, block: Array, out: Array) -> tuple[NavigationState, Array]:
         """Do all updates that the block fills and write them to out."""
@@ -288,7 +295,3 @@ def _scatter(rows: Array, columns: list[Array], begin: int) -> None:
     for column in columns:
         column[begin : begin + len(rows)] = rows[:, first : first + column.shape[1]]
         first += column.shape[1]
-
-
-def _trajectory(earth: Earth, t: Array, out: Array) -> Trajectory:
-    return Trajectory(earth, t, out[:, :4].copy(), out[:, 4:7].copy(), out[:, 7:].copy())

@@ -24,8 +24,8 @@ class DualEuler(NavigationSolver):
 
     The angles of b against n follow the differential equations of the attitude solver `dual-euler`, with the rate
     ``omega_nb = omega_ib - C_bn omega_in``, C_bn at every moment of the update and not held; omega_ib is the polynomial
-    that reproduces its N increments. Everything else, gravity, velocity and position, is that of `navigation-frame` with its defaults:
-    what the two differ by is the attitude algorithm.
+    that reproduces its N increments. Everything else, gravity, velocity and position, is that of `navigation-frame`
+    with its defaults: what the two differ by is the attitude algorithm.
 
     Parameters
     ----------
@@ -85,9 +85,9 @@ class DualEuler(NavigationSolver):
         from bench.solvers.navigation._dual_euler_kernels import navigate
 
         north, holds = self.azimuth == "north", self.height == "held"
-        frame, fit = constants
+        (p, S, a, L, T), (tables, enter, leave) = constants
         state, angles = carry[:-ANGLES], carry[-ANGLES:]
-        done = navigate(*frame, north, holds, *fit, increments, first, state, angles, out)
+        done = navigate(p, S, a, L, T, north, holds, tables, enter, leave, increments, first, state, angles, out)
         if done < len(out):
             raise AccuracyError(
                 f"{self.name} changes its longitude too fast in update {first + done}, next to a pole: "

@@ -44,8 +44,8 @@ class FirstOrderQuaternion(NavigationSolver):
 
     Notes
     -----
-    Order 1 in dt; 2 with `resolved` "middle", were it not for omega_in, gravity and Coriolis acceleration, which are
-    those at the start of an update.
+    Order 1 in dt; 2 with `resolved` "middle" and `normalised`, but for omega_in, gravity and Coriolis acceleration,
+    which are those at the start of an update: of order 1, but small.
 
     References
     ----------
@@ -68,8 +68,8 @@ class FirstOrderQuaternion(NavigationSolver):
 
     @property
     def order_periodic(self) -> int:
-        """1: something is held over an update in every case."""
-        return 1
+        """1, or 2 where both the norm and the time of the force are mended."""
+        return 2 if self.resolved == "middle" and self.normalised else 1
 
     def _constants(self, earth: Earth, dt: float) -> tuple[Any, ...]:
         return earth.parameters, dt
