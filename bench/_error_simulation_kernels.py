@@ -7,14 +7,14 @@ from bench.solvers.damping._error_kernels import COLUMNS, ROWS, step_matrix, tra
 
 
 @njit
-def propagate(p, deflection, dt, rows, f_n, rate, gain, normals, x, out):
-    """Take the errors x (trials, 13) along the steps of rows (m + 1, 7), in place, and keep them in out (m, trials, 13).
+def propagate(p, deflection, dt, rows, f_n, rate, shares, gain, normals, x, out):
+    """Take the errors x (trials, 13) along the steps of rows (m + 1, 7), in place; keep them in out (m, trials, 13).
 
     normals (m, trials, 13) times gain (13,) are the impulses in the middle of each step.
     """
     F, term = np.empty((ROWS, COLUMNS)), np.empty((2, ROWS, COLUMNS))
     forth, half, back = np.empty((ROWS, COLUMNS)), np.empty((ROWS, COLUMNS)), np.empty((ROWS, COLUMNS))
-    decay, half_decay = np.exp(-dt * rate), np.exp(-0.5 * dt * rate)
+    decay, half_decay = shares[0], shares[1]
     new = np.empty(COLUMNS)
     for k in range(f_n.shape[0]):
         step_matrix(p, deflection, rows[k], rows[k + 1], f_n[k], F)

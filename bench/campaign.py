@@ -6,11 +6,12 @@ depend on the executor, on the number of workers or on the order of completion.
 
 import os
 import signal
+import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
 from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from dataclasses import dataclass
-from multiprocessing import get_context
+from multiprocessing import connection, get_context, parent_process
 from pathlib import Path
 from typing import Any
 
@@ -69,11 +70,20 @@ def open_executor(jobs: int, scheduler: str | None = None) -> AbstractContextMan
     if jobs == 1:
         return nullcontext()
     # spawn: a forked child would inherit threads and locks that it cannot use.
-    return ProcessPoolExecutor(jobs, mp_context=get_context("spawn"), initializer=_ignore_ctrl_c)
+    return ProcessPoolExecutor(jobs, mp_context=get_context("spawn"), initializer=_obey_the_parent)
 
 
-def _ignore_ctrl_c() -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent alone decides
+def _obey_the_parent() -> None:
+    """Leave Ctrl-C to the parent, and end with it, however it ends."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    parent = parent_process()
+    assert parent is not None
+
+    def follow() -> None:
+        connection.wait([parent.sentinel])
+        os._exit(1)
+
+    threading.Thread(target=follow, daemon=True).start()
 
 
 @contextmanager
@@ -191,6 +201,14 @@ def _run_on(
                     raise _failed(item, error) from error
                 else:
                     pending[executor.submit(measure, item.work)] = (item, tries + 1)
+    except KeyboardInterrupt:
+        for future, (item, _) in pending.items():
+            if future.done() and future.exception() is None:
+                finish(item, future.result())
+        if isinstance(executor, ProcessPoolExecutor):  # what they have in hand is small, and made again on resuming
+            for process in list((executor._processes or {}).values()):
+                process.terminate()
+        raise
     finally:
         for future in pending:
             future.cancel()

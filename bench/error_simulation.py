@@ -1,7 +1,7 @@
 """Fast second mode of the damping experiments: errors of an INS simulated by their model instead of running the INS.
 
-A free INS at 100 Hz is the truth of the matter; where thousands of hours are needed, as for consistency over Monte Carlo
-trials, the 13 errors are propagated along the true path once a second, X' = F X + w, for many trials at once::
+A free INS at 100 Hz is the truth of the matter; where thousands of hours are needed, as for consistency over Monte
+Carlo trials, the 13 errors are propagated along the true path once a second, X' = F X + w, for many trials at once::
 
     truth = InsSamples.of(motion.trajectory(t))
     simulation = ErrorSimulation(DampingModel(), trials=50, seed=1)
@@ -10,7 +10,7 @@ trials, the 13 errors are propagated along the true path once a second, X' = F X
 """
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,6 +19,7 @@ from bench.errors import Array, InputError, require_array, require_integer, requ
 from bench.imu._options import fork
 from bench.rotation import quat_from_rotvec, quat_multiply, quat_normalize
 from bench.solvers.damping import DampingModel, InsSamples
+from bench.solvers.damping._model import PUBLISHED
 from bench.trajectory import Trajectory
 
 SIZE = 13
@@ -37,8 +38,8 @@ class SimulationState(NamedTuple):
 class ErrorSimulation:
     """Errors of an INS of held height along a true path, in many trials.
 
-    Trial k draws from ``SeedSequence(seed, spawn_key=(k, 0))``: alone or among others it has the same errors, and so for
-    any chunks.
+    Trial k draws from ``SeedSequence(seed, spawn_key=(k, 0))``: alone or among others it has the same errors, and
+    so for any chunks.
 
     Parameters
     ----------
@@ -54,7 +55,7 @@ class ErrorSimulation:
         If an option is out of range.
     """
 
-    model: DampingModel = DampingModel()
+    model: DampingModel = PUBLISHED
     trials: int = 1
     seed: int = 0
 
@@ -96,7 +97,7 @@ class ErrorSimulation:
         """
         from bench._error_simulation_kernels import propagate
         from bench.solvers.damping._samples import deflection
-        from bench.solvers.damping._serial import path_rows, rates
+        from bench.solvers.damping._serial import path_rows, rates, shares
 
         path = truth if state.last is None else InsSamples.joined(state.last, truth)
         steps, first = len(path) - 1, 1 if state.last is None else 0
@@ -107,9 +108,11 @@ class ErrorSimulation:
             dt = float(path.t[-1] - path.t[0]) / steps
             normals = np.stack([rng.standard_normal((steps, SIZE)) for rng in generators], axis=1)
             gain = np.sqrt(self.model.density * dt)
-            earth = truth.earth
-            constants: tuple[Any, ...] = (earth.parameters, deflection(earth), dt, path_rows(path), path.f_n[1:])
-            propagate(*constants, rates(self.model), gain, normals, x, out[first:])
+            rate, earth = rates(self.model), truth.earth
+            propagate(
+                *(earth.parameters, deflection(earth), dt, path_rows(path), path.f_n[1:]),
+                *(rate, shares(rate, dt), gain, normals, x, out[first:]),
+            )
         return SimulationState(generators, x, truth[-1:]), out
 
 
@@ -127,9 +130,7 @@ def disturbed(truth: InsSamples, x: ArrayLike) -> InsSamples:
     v_n[:, :2] += x[:, :2]
     q_nb = quat_normalize(quat_multiply(quat_from_rotvec(-x[:, 4:7]), truth.q_nb))
     latitude, longitude = truth.latitude + x[:, 2], truth.longitude + x[:, 3]
-    return InsSamples.of(
-        Trajectory.from_geodetic(truth.earth, truth.t, q_nb, v_n, latitude, longitude, truth.height)
-    )
+    return InsSamples.of(Trajectory.from_geodetic(truth.earth, truth.t, q_nb, v_n, latitude, longitude, truth.height))
 
 
 def reference_velocity(
@@ -160,4 +161,3 @@ def reference_velocity(
 
 def _generator(seed: int, trial: int, use: int) -> np.random.Generator:
     return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(trial, use)))
-

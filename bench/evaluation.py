@@ -225,5 +225,4 @@ def chi_square_bounds(degrees: int, trials: int = 1, level: float = 0.95) -> tup
     total = require_integer("degrees", degrees, minimum=1) * require_integer("trials", trials, minimum=1)
     if not 0.0 < require_scalar("level", level) < 1.0:
         raise InputError(f"level must be between 0 and 1, got {level!r}")
-    low, high = chi2.ppf([0.5 * (1 - level), 0.5 * (1 + level)], total) / trials
-    return float(low), float(high)
+    return float(chi2.ppf(0.5 * (1 - level), total)) / trials, float(chi2.ppf(0.5 * (1 + level), total)) / trials

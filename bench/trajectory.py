@@ -213,10 +213,13 @@ def navigation_errors(estimate: Trajectory, truth: Trajectory) -> NavigationErro
     Raises
     ------
     InputError
-        If the lengths differ or the times differ by more than 1e-6 s.
+        If the Earth models or the lengths differ, or the times differ by more than 1e-6 s.
     """
     from bench.evaluation import attitude_error
 
+    if estimate.earth != truth.earth:
+        names = f"{estimate.earth.name} and {truth.earth.name}"
+        raise InputError(f"estimate and truth must be on the same Earth, got {names}")
     if len(estimate) != len(truth):
         raise InputError(f"estimate and truth must have the same length, got {len(estimate)} and {len(truth)}")
     if (gap := np.abs(estimate.t - truth.t).max()) > 1e-6:

@@ -15,21 +15,24 @@ KNOWN = DampingModel(reference_noise=0.05)
 NAMES = ("velocity-error", "velocity-change", "double-filter", "bias-augmented")
 
 
-def ship(duration, *, v_E=10.0, v_N=8.0, turn=0.0, sway=0.0, latitude=math.radians(45), dt=1.0, earth=SPHERE):
+def ship(duration, *, v_E=10.0, v_N=8.0, turn=0.0, sway=0.0, latitude=0.25 * math.pi, dt=1.0, earth=SPHERE):
     """Return true samples of a ship on a loxodrome, with a slow swing of its speed and of its attitude."""
     t = np.arange(round(duration / dt) + 1) * dt
     scale = 1.0 + turn * np.sin(2 * math.pi * t / 1800)
     v_n = np.stack([v_E * scale, v_N * scale, 0 * t], axis=1)
     R = earth.semi_major_axis
     L = latitude + v_N / R * (t + turn * (1 - np.cos(2 * math.pi * t / 1800)) * 1800 / (2 * math.pi))
-    # Simpson's rule in the latitude's tangent is not needed: truth for the filters is these samples, whatever they are.
-    longitude = np.concatenate([[0.0], np.cumsum(0.5 * dt * (v_n[1:, 0] + v_n[:-1, 0]) / R / np.cos(0.5 * (L[1:] + L[:-1])))])
+    # By the trapezoidal rule: whatever these samples are, they are the truth of the filters.
+    longitude = np.concatenate(
+        [[0.0], np.cumsum(0.5 * dt * (v_n[1:, 0] + v_n[:-1, 0]) / R / np.cos(0.5 * (L[1:] + L[:-1])))]
+    )
     q_nb = quat_from_euler(0.3 + sway * np.sin(t / 40), sway * np.sin(t / 11), sway * np.cos(t / 17))
     return InsSamples.of(Trajectory.from_geodetic(earth, t, q_nb, v_n, L, longitude, 0 * t))
 
 
 def mean_step(ins, k, model):
     """Return Phi and Q_d of the step from row k - 1 to k by Van Loan, with the mean F of its ends."""
+
     def at(row):
         return error_matrix(
             mean(ins.v_n), [float(mean(ins.latitude)[0])], ins.q_nb[row][None], ins.f_n[k][None],

@@ -1,6 +1,7 @@
 """Recordings with a known answer: a unit that stands on the Earth, in closed form."""
 
 import numpy as np
+import pytest
 from scipy.spatial.transform import Rotation
 
 from bench.earth import WGS84
@@ -30,6 +31,15 @@ def as_rates(recording: Recording) -> Recording:
 
 def initial() -> NavigationInitial:
     return NavigationInitial(Q_NB, latitude=LATITUDE, longitude=LONGITUDE, height=HEIGHT)
+
+
+def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let figures be one pixel each, where they are not what is tested: drawing takes longer than all else."""
+    pixel = bytes.fromhex(
+        "89504e470d0a1a0a0000000d49484452000000010000000108000000003a7e9b55"
+        "0000000a49444154789c63680000008200813f4cd8d00000000049454e44ae426082"
+    )
+    monkeypatch.setattr("bench.figures.draw", lambda _, path: path.write_bytes(pixel))
 
 
 def truth(t: np.ndarray) -> Trajectory:

@@ -2,6 +2,10 @@
 
 import os
 import pickle
+import signal
+import subprocess
+import sys
+import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -13,6 +17,7 @@ import bench
 from bench.campaign import CampaignError, CampaignInterrupted, Item, cpu_count, open_executor, run_campaign
 from bench.table import Table
 
+ROOT = Path(__file__).parents[1]
 
 def square(work):
     return Table({"value": np.array([work, work**2], dtype=float), "name": np.array([f"item {work}"] * 2)})
@@ -124,3 +129,38 @@ def test_dask_gives_the_same_rows():
         open_executor(1, cluster.scheduler_address) as executor,
     ):
         assert same(run_campaign(square, ITEMS, executor=executor), run_campaign(square, ITEMS))
+
+
+SLEEPER = """
+import sys, time
+import numpy as np
+from pathlib import Path
+from bench.campaign import Item, open_executor, run_campaign
+from bench.table import Table
+
+def measure(work):
+    if work:
+        Path(sys.argv[1], f"started{work}").touch()
+        time.sleep(120)
+    return Table({"work": np.array([float(work)])})
+
+if __name__ == "__main__":
+    with open_executor(2, None) as executor:
+        run_campaign(measure, [Item(str(k), k) for k in range(4)], executor=executor, folder=Path(sys.argv[1], "parts"))
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGKILL])
+def test_workers_end_with_their_parent(tmp_path, end):
+    (tmp_path / "sleeper.py").write_text(SLEEPER)
+    command = [sys.executable, str(tmp_path / "sleeper.py"), str(tmp_path)]
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, env={**os.environ, "PYTHONPATH": str(ROOT)})
+    deadline = time.monotonic() + 60
+    while not (tmp_path / "started1").exists() or not (tmp_path / "started2").exists():
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+    process.send_signal(end)
+    _, said = process.communicate(timeout=20)  # the workers hold its stderr: this waits for all of them
+    assert (tmp_path / "parts" / "0.parquet").exists()
+    assert end == signal.SIGKILL or b"1 of 4 parts are finished and kept" in said

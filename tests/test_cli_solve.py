@@ -8,7 +8,7 @@ import pytest
 from bench.cli import main
 from bench.formats import file_format
 from bench.table import Table
-from tests.recorded_cases import LATITUDE, LONGITUDE, as_rates, standing, truth
+from tests.recorded_cases import LATITUDE, LONGITUDE, as_rates, standing, truth, undrawn
 
 PLACE = ["--latitude-deg", str(np.degrees(LATITUDE)), "--longitude-deg", str(np.degrees(LONGITUDE)), "--height-m", "35"]
 ANGLES = [
@@ -25,7 +25,9 @@ BASE = ["--format", "kf-gins", "--solver", "navigation-frame"]
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
+    """A folder with a recording and its reference; figures are not drawn."""
     monkeypatch.chdir(tmp_path)
+    undrawn(monkeypatch)
     file_format("kf-gins").write_imu("imu.txt", standing(500))
     file_format("kf-gins").write_reference("truth.nav", truth(50.0 + np.arange(6)))
     return tmp_path
@@ -53,6 +55,7 @@ def test_export_and_solve(tmp_path, monkeypatch, capsys):
     assert main([*motion, *files, *csv, "--rate", "100", "--duration", "5"]) == 0
     assert "recording, 500 increments: " in capsys.readouterr().out
     assert (tmp_path / "truth.csv").read_text().count("\n") == 12
+    undrawn(monkeypatch)
     solver = ["--solver=navigation/navigation-frame", "--solver.samples", "5", "--solver.height", "free"]
     out = ["--out", "solved", "--earth", "sphere", "--no-record"]
     assert main(["solve", "imu.csv", *csv, *solver, *out, "--initial", "reference", "--reference", "truth.csv"]) == 0

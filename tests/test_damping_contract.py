@@ -124,7 +124,7 @@ def test_the_gate_leaves_out_what_does_not_fit(damping):
     plain = damping.solve(INS, v_ref)
     plain = plain.parts[0] if plain.parts else plain
     assert plain.used.all()
-    assert np.abs(plain.x[201, :2] - first.x[201, :2]).max() > 1.0
+    assert np.abs(plain.x[201, :2] - first.x[201, :2]).max() > 0.3
 
 
 def test_input_is_not_written_to(damping):
@@ -160,7 +160,7 @@ def test_bad_input(damping, call, message):
 
 def test_what_is_not_finite_is_not_returned(damping):
     with pytest.raises(AccuracyError, match=f"{damping.name} diverges at t = "), np.errstate(all="ignore"):
-        damping.solve(INS, np.where(np.arange(401)[:, None] == 7, 1.7e308, V_REF))
+        damping.solve(INS, np.where(np.arange(802).reshape(401, 2) // 2 % 2, 1.7e308, -1.7e308))
 
 
 @pytest.mark.parametrize(

@@ -15,6 +15,8 @@ ONLY_HERE = {
         "bench/record/_attitude_scene.py",
         "bench/record/_navigation_scene.py",
         "bench/record/attitude.py",
+        "bench/record/damping.py",
+        "bench/record/dual_euler.py",
         "bench/record/gyro_free.py",
         "bench/record/instrument.py",
         "bench/record/layout.py",
@@ -24,7 +26,7 @@ ONLY_HERE = {
     },
     "matplotlib": {"bench/figures.py"},
     "rich": {"bench/progress.py"},
-    "tyro": {"bench/cli.py", "bench/cli_recordings.py"},
+    "tyro": {"bench/_cli_types.py", "bench/cli.py", "bench/cli_recordings.py"},
     "numba": {"bench/jit.py"},
 }
 

@@ -215,8 +215,8 @@ def test_input_is_not_touched_and_any_layout_is_taken(solver):
     [
         ({"dt": 0.0}, "dt must be a positive number, got 0.0"),
         ({"dt": np.nan}, "dt must be finite"),
-        ({"initial": None}, "initial must be a NavigationInitial, got None"),
-        ({"earth": "wgs84"}, "earth must be a Earth, got 'wgs84'"),
+        ({"initial": None}, "initial must be of type NavigationInitial, got NoneType"),
+        ({"earth": "wgs84"}, "earth must be of type Earth, got str"),
         ({"dtheta_b": np.zeros((N_ALL, 2))}, r"dtheta_b must have shape \(n, 3\), got \(240, 2\)"),
         ({"dtheta_b": np.zeros((0, 3))}, "dtheta_b must not be empty"),
         ({"dtheta_b": "x"}, "dtheta_b must be an array of real numbers"),

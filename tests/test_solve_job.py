@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import bench
+from bench.aiding import VelocityFile
 from bench.errors import AccuracyError, InputError, OutputError
 from bench.formats import file_format
 from bench.runner import Reporter
@@ -16,10 +17,11 @@ from bench.starts.header import StartHeader
 from bench.starts.reference import StartReference
 from bench.starts.values import StartValues
 from bench.table import Table
-from tests.recorded_cases import HEIGHT, LATITUDE, LONGITUDE, initial, standing, truth
+from tests.recorded_cases import HEIGHT, LATITUDE, LONGITUDE, initial, standing, truth, undrawn
 
 PSINS = Path(__file__).parent / "data" / "psins"
 KF = file_format("kf-gins")
+LOG = VelocityFile(columns="t,ve,vn", time_unit="s", velocity_unit="m/s")
 INS = bench.solver("navigation", "navigation-frame", samples=2)
 VALUES = StartValues(
     latitude_deg=np.degrees(LATITUDE),
@@ -72,7 +74,8 @@ def test_what_is_in_the_folder(job, tmp_path):
     assert said[0].startswith("Reading ")
 
 
-def test_a_finished_run_is_not_touched_without_force(job, tmp_path):
+def test_a_finished_run_is_not_touched_without_force(job, tmp_path, monkeypatch):
+    undrawn(monkeypatch)
     run_job(job, tmp_path / "out", record=False)
     assert not (tmp_path / "out" / "recording.rrd").exists()
     before = (tmp_path / "out" / "result.json").stat().st_mtime_ns
@@ -88,7 +91,8 @@ def test_without_a_folder_nothing_is_written(job, tmp_path):
     assert sorted(tmp_path.rglob("*")) == before
 
 
-def test_attitude_alone(job, tmp_path):
+def test_attitude_alone(job, tmp_path, monkeypatch):
+    undrawn(monkeypatch)
     attitude = bench.solver("attitude", "rotation-vector", samples=3)
     outcome = run_job(SolveJob(job.imu, KF, attitude, VALUES, reference=job.reference), tmp_path / "out")
     assert outcome.counts == {"skipped": 0, "solved": 501, "left_over": 0, "compared": 41, "interpolated": 41}
@@ -111,7 +115,8 @@ def test_the_biases_have_the_units_of_their_names(job):
     assert found.v_n[-1, 2] == pytest.approx(9.80665e-3 * 5, rel=0.03)
 
 
-def test_what_is_doubtful_is_told_and_kept(job, tmp_path):
+def test_what_is_doubtful_is_told_and_kept(job, tmp_path, monkeypatch):
+    undrawn(monkeypatch)
     job.imu.write_text(job.imu.read_text().rstrip())
     said = []
     run_job(job, tmp_path / "out", record=False, reporter=Reporter(say=said.append))
@@ -147,6 +152,18 @@ def test_bad_jobs_are_refused_before_any_work(job, tmp_path):
         SolveJob(nowhere, KF, INS, StartReference())
     with pytest.raises(InputError, match="reference_format needs a reference, got 'kf-gins' without one"):
         SolveJob(nowhere, KF, INS, VALUES, reference_format=KF)
+    velocity, csv = {"filter": bench.solver("damping", "velocity-error")}, {"aiding": nowhere, "aiding_format": LOG}
+    for options, message in (
+        (velocity, "aiding and filter must be given together.*got filter 'velocity-error' alone"),
+        (csv, "aiding and filter must be given together.*got the velocity alone"),
+        ({**velocity, "aiding": nowhere}, "aiding and aiding_format must be given together"),
+        ({**velocity, **csv}, r"set height to 'held' \(--solver.height held\), got 'free'"),
+    ):
+        with pytest.raises(InputError, match=message):
+            SolveJob(nowhere, KF, INS, VALUES, **options)
+    held = bench.solver("navigation", "navigation-frame", height="held")
+    with pytest.raises(InputError, match=r"path must be a file, got .*nothing\.txt"):
+        run_job(SolveJob(job.imu, KF, held, VALUES, **velocity, **csv), tmp_path / "out")
     with pytest.raises(InputError, match=r"gyro_bias_deg_per_h must have shape \(3,\)"):
         SolveJob(nowhere, KF, INS, VALUES, gyro_bias_deg_per_h=(1.0,))
     for bad in (
@@ -170,7 +187,7 @@ def test_a_failure_leaves_what_was_written(job, tmp_path, monkeypatch):
         run_job(job, tmp_path / "out")
     assert (tmp_path / "out" / "tables" / "trajectory.parquet").exists()
     assert not (tmp_path / "out" / "result.json").exists()
-    monkeypatch.undo()
+    undrawn(monkeypatch)
     run_job(job, tmp_path / "out", record=False)  # the same job goes on without force
 
 

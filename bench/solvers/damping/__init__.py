@@ -1,8 +1,8 @@
 """Damping filters: an external velocity bounds the errors of a free-running INS, estimated from outside of it.
 
-The INS runs free (output correction): a navigation solver with ``height="held"``, sampled once a second. A filter takes
-those samples and the external reference velocity, and estimates the errors of the INS in 13 states (15 with the error of
-the reference)::
+The INS runs free (output correction): a navigation solver with ``height="held"``, sampled once a second. A filter
+takes those samples and the external reference velocity, and estimates the errors of the INS in 13 states (15 with the
+error of the reference)::
 
     ins = InsSamples.of(trajectory)                        # of the free INS, every second
     solution = bench.solver("damping", "double-filter").solve(ins, v_ref)
@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from bench.errors import AccuracyError, Array, InputError, require_array, require_integer, require_scalar
 from bench.references import Source
-from bench.solvers.damping._model import DampingModel
+from bench.solvers.damping._model import PUBLISHED, DampingModel
 from bench.solvers.damping._samples import STEP_TOLERANCE, InsSamples, error_states
 from bench.solvers.damping._solution import STATES, DampingSolution
 
@@ -75,7 +75,7 @@ class DampingFilter(ABC):
     name: ClassVar[str]
     source: ClassVar[Source]
 
-    model: DampingModel = DampingModel()
+    model: DampingModel = PUBLISHED
     gate: float | None = None
     covariance_every: int = 0
 
@@ -87,7 +87,7 @@ class DampingFilter(ABC):
         require_integer("covariance_every", self.covariance_every, minimum=0)
         self._check_options()
 
-    def _check_options(self) -> None:
+    def _check_options(self) -> None:  # noqa: B027 (no option to check is the rule)
         """Check the options that a filter adds."""
 
     @property
@@ -152,9 +152,10 @@ class DampingFilter(ABC):
         if np.isinf(v_ref).any() or (np.isnan(v_ref[:, 0]) != np.isnan(v_ref[:, 1])).any():
             raise InputError("v_ref must be finite, or NaN both east and north where there is no reference")
         carry, solution = self._run(state, ins, v_ref)
-        if not (np.isfinite(solution.x).all() and np.isfinite(solution.sigma).all()):
-            k = int(np.argmin((np.isfinite(solution.x) & np.isfinite(solution.sigma)).all(axis=1)))
-            raise AccuracyError(f"{self.name} diverges at t = {solution.t[k]:g} s")
+        for part in (solution, *solution.parts):
+            finite = (np.isfinite(part.x) & np.isfinite(part.sigma)).all(axis=1)
+            if not finite.all():
+                raise AccuracyError(f"{self.name} diverges at t = {part.t[int(np.argmin(finite))]:g} s")
         return replace(state, rows=state.rows + len(ins), last=ins[-1:], carry=carry), solution
 
     @final

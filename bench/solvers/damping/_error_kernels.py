@@ -42,7 +42,9 @@ def fill(p, deflection, v_E, v_N, L, f_E, f_N, f_U, C, F):
     transport = v_E / R_N
     omega_E, omega_N, omega_U = -v_N / R_M, earth_N + transport, earth_U + transport * tan
     slope = transport * sec * sec
-    F[:] = 0.0
+    for i in range(F.shape[0]):
+        for j in range(F.shape[1]):
+            F[i, j] = 0.0
     F[0, 0] = v_N * tan / R_N
     F[0, 1] = earth_U + omega_U
     F[0, 2] = v_N * (2.0 * earth_N + slope)
@@ -87,29 +89,30 @@ def transition(F, rate, dt, term, forth, half, back):
 
     rate (n,) holds 1/tau of the states beyond the rows; term (2, 7, 13) is scratch.
     """
-    forth[:], half[:], back[:] = 0.0, 0.0, 0.0
-    for i in range(ROWS):
-        forth[i, i], half[i, i], back[i, i] = 1.0, 1.0, 1.0
-        for j in range(COLUMNS):
+    rows, columns = F.shape  # not the constants, whose loops the compiler would unroll for many seconds
+    for i in range(rows):
+        for j in range(columns):
+            one = 1.0 if i == j else 0.0
+            forth[i, j], half[i, j], back[i, j] = one, one, one
             term[0, i, j] = F[i, j] * dt
     shrink, sign = 0.5, -1.0
     for order in range(1, ORDER + 1):
         old, new = term[(order - 1) % 2], term[order % 2]
-        for i in range(ROWS):
-            for j in range(COLUMNS):
+        for i in range(rows):
+            for j in range(columns):
                 forth[i, j] += old[i, j]
                 half[i, j] += shrink * old[i, j]
                 back[i, j] += sign * old[i, j]
         if order < ORDER:
             scale = dt / (order + 1.0)
-            for i in range(ROWS):
-                for j in range(ROWS):
+            for i in range(rows):
+                for j in range(rows):
                     new[i, j] = 0.0
-                for j in range(ROWS, COLUMNS):
+                for j in range(rows, columns):
                     new[i, j] = -old[i, j] * rate[j] * scale
-                for k in range(ROWS):
+                for k in range(rows):
                     factor = old[i, k] * scale
-                    for j in range(COLUMNS):
+                    for j in range(columns):
                         new[i, j] += factor * F[k, j]
         shrink *= 0.5
         sign = -sign
@@ -123,38 +126,39 @@ def predict(x, P, forth, half, decay, half_decay, q, dt, M, y):
     the noise.
     """
     n = x.shape[0]
+    rows, columns = forth.shape
     sixth = dt / 6.0
     for i in range(n):
         P[i, i] += sixth * q[i]
-    for i in range(ROWS):
+    for i in range(rows):
         total = 0.0
         for j in range(n):
             M[i, j] = 0.0
-        for k in range(COLUMNS):
+        for k in range(columns):
             factor = forth[i, k]
             total += factor * x[k]
             for j in range(n):
                 M[i, j] += factor * P[k, j]
         y[i] = total
     for i in range(n):
-        x[i] = y[i] if i < ROWS else x[i] * decay[i]
-    for i in range(ROWS):
+        x[i] = y[i] if i < rows else x[i] * decay[i]
+    for i in range(rows):
         for j in range(i + 1):
             total, noise = 0.0, 0.0
-            for k in range(COLUMNS):
+            for k in range(columns):
                 total += M[i, k] * forth[j, k]
                 noise += half[i, k] * half[j, k] * q[k]
             P[i, j] = total + 4.0 * sixth * noise
             P[j, i] = P[i, j]
         P[i, i] += sixth * q[i]
-        for j in range(ROWS, n):
+        for j in range(rows, n):
             value = M[i, j] * decay[j]
-            if j < COLUMNS:
+            if j < columns:
                 value += 4.0 * sixth * half[i, j] * q[j] * half_decay[j]
             P[i, j] = value
             P[j, i] = value
-    for i in range(ROWS, n):
-        for j in range(ROWS, i + 1):
+    for i in range(rows, n):
+        for j in range(rows, i + 1):
             P[i, j] *= decay[i] * decay[j]
             P[j, i] = P[i, j]
         P[i, i] += sixth * q[i] * (1.0 + 4.0 * half_decay[i] * half_decay[i])
@@ -163,12 +167,13 @@ def predict(x, P, forth, half, decay, half_decay, q, dt, M, y):
 @njit
 def turn_back(r, back, growth, scratch):
     """Multiply the rows r (2, 13) from the right by exp(-F dt); growth (n,) is exp(dt/tau)."""
+    rows, columns = back.shape
     for a in range(2):
-        for j in range(COLUMNS):
-            scratch[j] = r[a, j] * growth[j] if j >= ROWS else 0.0
-        for k in range(ROWS):
+        for j in range(columns):
+            scratch[j] = r[a, j] * growth[j] if j >= rows else 0.0
+        for k in range(rows):
             factor = r[a, k]
-            for j in range(COLUMNS):
+            for j in range(columns):
                 scratch[j] += factor * back[k, j]
-        for j in range(COLUMNS):
+        for j in range(columns):
             r[a, j] = scratch[j]

@@ -42,14 +42,14 @@ def joseph(x, P, h, z, variance, g, c):
 
 
 @njit
-def measure(x, P, H, z0, z1, variance, threshold, scratch, out):
+def measure(x, P, H, z, variance, threshold, scratch, out):
     """Use a measurement of two components unless its innovation is too large; return 1.0 if it was used.
 
-    H is (2, n); out (3,) receives the innovation and its normalised square.
+    H is (2, n); out (4,) receives the innovation and its normalised square.
     """
     n = x.shape[0]
     a, b, d = variance, 0.0, variance
-    u, v = z0, z1
+    u, v = z[0], z[1]
     for i in range(n):
         g0, g1 = 0.0, 0.0
         for j in range(n):
@@ -62,91 +62,108 @@ def measure(x, P, H, z0, z1, variance, threshold, scratch, out):
         v -= H[1, i] * x[i]
     out[0], out[1] = u, v
     out[2] = (d * u * u - 2.0 * b * u * v + a * v * v) / (a * d - b * b)
-    if not out[2] <= threshold:
+    if out[2] > threshold:
         return 0.0
-    joseph(x, P, H[0], z0, variance, scratch[0], scratch[1])
-    joseph(x, P, H[1], z1, variance, scratch[0], scratch[1])
+    for c in range(2):
+        joseph(x, P, H[c], z[c], variance, scratch[0], scratch[1])
     return 1.0
 
 
 @njit
-def change(x1, x2, P2, r, held, T, variance, threshold, scratch, found):
-    """Use the change of filter 1's velocity error over T in filter 2; return 1.0 if it was used.
-
-    The INS's own change of velocity, less that of the smoothed reference v_INS - dv_1, is dv_1(t2) - dv_1(t1); and
-    since Phi' = F Phi, (1/T) int F_(1:2) Phi(t, t2) dt is (1/T) [I - Phi(t2, t1)^-1]_(1:2).
-    """
-    H = np.empty((2, COLUMNS))
-    for a in range(2):
-        for j in range(COLUMNS):
-            H[a, j] = -r[a, j] / T
-        H[a, a] += 1.0 / T
-    z0, z1 = (x1[0] - held[0]) / T, (x1[1] - held[1]) / T
-    return measure(x2, P2, H, z0, z1, variance, threshold, scratch, found)
+def copy(source, target):
+    """Copy a matrix; an assignment of slices takes seconds to compile."""
+    for i in range(source.shape[0]):
+        for j in range(source.shape[1]):
+            target[i, j] = source[i, j]
 
 
 @njit
-def store(k, x, P, found, out_x, out_sigma, out_found):
-    """Write row k: estimate, standard deviations, innovation (2), NIS and whether it was used."""
-    for i in range(x.shape[0]):
-        out_x[k, i] = x[i]
-        out_sigma[k, i] = math.sqrt(P[i, i])
-    for i in range(4):
-        out_found[k, i] = found[i]
+def measurement(which, here, v_ref, x, r, held, T, H, z):
+    """Fill H (2, n) and z (2,) of filter 1 (which = 0) or 2 (1); return whether there is a measurement.
+
+    Filter 2: the INS's own change of velocity, less that of the smoothed reference v_INS - dv_1, is
+    dv_1(t2) - dv_1(t1); and since Phi' = F Phi, (1/T) int F_(1:2) Phi(t, t2) dt is (1/T) [I - Phi(t2, t1)^-1]_(1:2).
+    """
+    for a in range(2):
+        for j in range(H.shape[1]):
+            H[a, j] = 0.0
+        if which == 0:
+            z[a] = here[a] - v_ref[a]
+            H[a, a] = 1.0
+            if x.shape[1] > COLUMNS:
+                H[a, COLUMNS + a] = -1.0
+        else:
+            z[a] = (x[0, a] - held[a]) / T
+            for j in range(r.shape[1]):
+                H[a, j] = -r[a, j] / T
+            H[a, a] += 1.0 / T
+    return not math.isnan(z[0])
 
 
 @njit
 def run(
-    p, deflection, dt, rows, f_n, v_ref, first, rate, q, variance, threshold, steps, variance2,
-    x1, P1, x2, P2, r, held, every, out_x1, out_s1, out_found1, out_x2, out_s2, out_found2, kept1, kept2,
-):  # fmt: skip
-    """Run filter 1 and, if steps > 0, filter 2 behind it over the samples of a chunk.
+    p,
+    deflection,
+    dt,
+    rows,
+    f_n,
+    v_ref,
+    first,
+    rate,
+    shares,
+    q,
+    variances,
+    threshold,
+    steps,
+    every,
+    x,
+    P,
+    r,
+    held,
+    out_x,
+    out_sigma,
+    out_found,
+    kept,
+):
+    """Run filter 1, or filters 1 and 2 in series, over the samples of a chunk.
 
     rows (m + 1, 7) are v_E, v_N, L, q_nb of the sample before the chunk and of its samples; `first` counts the samples
-    before it. States beyond 13 are the error of the reference. x1, P1, x2, P2, the rows r (2, 13) that accumulate
-    Phi(t2, t1)^-1 and filter 1's velocity errors at t1 (held) are changed in place.
+    before it. rate (n,) is 1/tau and shares (3, n) what is left of the states after dt, after dt/2 and before dt, for
+    those that decay by themselves. x (f, n) and P (f, n, n) of the f filters, the rows r (2, 13) that accumulate
+    Phi(t2, t1)^-1 and filter 1's velocity errors at t1 (held) are changed in place. States beyond 13 are the error of
+    the reference. The
+    outputs (f, m, ...) receive estimate, standard deviations, and innovation (2), NIS and whether it was used; kept
+    (f, j, n, n) the covariance of every `every`-th sample.
     """
-    n = x1.shape[0]
+    filters, n = x.shape
     F, term = np.empty((ROWS, COLUMNS)), np.empty((2, ROWS, COLUMNS))
     forth, half, back = np.empty((ROWS, COLUMNS)), np.empty((ROWS, COLUMNS)), np.empty((ROWS, COLUMNS))
-    M, scratch, found = np.empty((ROWS, n)), np.empty((2, n)), np.empty(4)
-    decay, half_decay, growth = np.exp(-dt * rate), np.exp(-0.5 * dt * rate), np.exp(dt * rate)
-    H1 = np.zeros((2, n))
-    for a in range(2):
-        H1[a, a] = 1.0
-        if n > COLUMNS:
-            H1[a, COLUMNS + a] = -1.0
-    kept = 0
+    M, scratch, H, z = np.empty((ROWS, n)), np.empty((2, n)), np.empty((2, n)), np.empty(2)
+    decay, half_decay, growth = shares[0], shares[1], shares[2]
     for k in range(f_n.shape[0]):
         row = first + k
         if row > 0:
             step_matrix(p, deflection, rows[k], rows[k + 1], f_n[k], F)
             transition(F, rate, dt, term, forth, half, back)
-            predict(x1, P1, forth, half, decay, half_decay, q, dt, M, scratch[0])
-        found[0], found[1], found[2], found[3] = np.nan, np.nan, np.nan, 0.0
-        if not math.isnan(v_ref[k, 0]):
-            z0, z1 = rows[k + 1, 0] - v_ref[k, 0], rows[k + 1, 1] - v_ref[k, 1]
-            found[3] = measure(x1, P1, H1, z0, z1, variance, threshold, scratch, found)
-        store(k, x1, P1, found, out_x1, out_s1, out_found1)
-        if every > 0 and row % every == 0:
-            kept1[kept] = P1
-        if steps > 0:
+            turn_back(r, back, growth, scratch[0])
+        for which in range(filters):
+            found = out_found[which, k]
             found[0], found[1], found[2], found[3] = np.nan, np.nan, np.nan, 0.0
             if row > 0:
-                predict(x2, P2, forth, half, decay, half_decay, q, dt, M, scratch[0])
-                turn_back(r, back, growth, scratch[0])
-            if row % steps == 0:
-                if row > 0:
-                    found[3] = change(x1, x2, P2, r, held, dt * steps, variance2, threshold, scratch, found)
-                r[:] = 0.0
-                for a in range(2):
-                    r[a, a] = 1.0
-                    held[a] = x1[a]
-            store(k, x2, P2, found, out_x2, out_s2, out_found2)
+                predict(x[which], P[which], forth, half, decay, half_decay, q, dt, M, scratch[0])
+            due = which == 0 or (row > 0 and row % steps == 0)
+            if due and measurement(which, rows[k + 1], v_ref[k], x, r, held, dt * steps, H, z):
+                found[3] = measure(x[which], P[which], H, z, variances[which], threshold, scratch, found)
+            for i in range(n):
+                out_x[which, k, i] = x[which, i]
+                out_sigma[which, k, i] = math.sqrt(P[which, i, i])
             if every > 0 and row % every == 0:
-                kept2[kept] = P2
-        if every > 0 and row % every == 0:
-            kept += 1
+                copy(P[which], kept[which, (row - 1) // every - (first - 1) // every])
+        if row % steps == 0:
+            for a in range(2):
+                for j in range(r.shape[1]):
+                    r[a, j] = 1.0 if j == a else 0.0
+                held[a] = x[0, a]
 
 
 @njit

@@ -111,3 +111,6 @@ class DampingModel:
         drive = [2 * self.accelerometer_drift**2 / self.tau_f] * 3 + [2 * self.gyro_drift**2 / self.tau_g] * 3
         white = [self.velocity_noise**2] * 2 + [0.0] * 2 + [self.attitude_noise**2] * 3
         return np.array([*white, *drive])
+
+
+PUBLISHED = DampingModel()

@@ -65,8 +65,8 @@ class InsSamples:
         """Return the samples of a navigation solution at equally spaced times.
 
         The horizontal specific force follows from the INS's own velocity: with no upward velocity
-        mean f_EN = (v(t2) - v(t1))/T + mean of the Coriolis terms - gravity's level part, the mean taken over both ends;
-        the upward one is what carries the weight.
+        mean f_EN = (v(t2) - v(t1))/T + mean of the Coriolis terms - gravity's level part, the mean taken over both
+        ends; the upward one is what carries the weight.
 
         Parameters
         ----------

@@ -4,8 +4,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
-from bench.errors import Array, InputError
+from bench.errors import Array, Indices, InputError
 from bench.rotation import quat_from_rotvec, quat_multiply, quat_normalize
 from bench.solvers.damping._samples import STEP_TOLERANCE, InsSamples
 from bench.trajectory import Trajectory
@@ -66,9 +67,9 @@ class DampingSolution:
     sigma: Array
     innovation: Array
     nis: Array
-    used: Array
+    used: NDArray[np.bool_]
     covariance: Array
-    covariance_rows: Array
+    covariance_rows: Indices
     gamma: Array | None = None
     weight: Array | None = None
     parts: tuple["DampingSolution", ...] = ()

@@ -46,8 +46,8 @@ class BiasAugmented(DampingFilter):
             raise InputError(f"reference_tau must be positive, or infinite for a constant, got {self.reference_tau!r}")
 
     def _start(self, dt: float) -> Carry:
-        return start(self.model, (self.reference_bias, 1.0 / self.reference_tau))
+        return start(self.model, extra=(self.reference_bias, 1.0 / self.reference_tau))
 
     def _run(self, state: DampingState, ins: InsSamples, v_ref: Array) -> tuple[Carry, DampingSolution]:
-        carry, solution, _ = run(self, state, ins, v_ref)
+        carry, (solution,) = run(self, state, state.carry, ins, v_ref)
         return carry, solution

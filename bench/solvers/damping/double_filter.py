@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from bench.errors import Array, require_choice, require_scalar
 from bench.references import ZHAO, Source
@@ -76,7 +77,7 @@ class DoubleFilter(DampingFilter):
         require_choice("mean", self.mean, MEANS)
         require_scalar("window", self.window, positive=True)
 
-    def gamma(self, t: Array) -> Array:
+    def gamma(self, t: ArrayLike) -> Array:
         """Return gamma at times t, s, since the start of the run."""
         power = np.clip(self.gamma_rate * (self.gamma_start + self.gamma_delay - np.asarray(t)), -700.0, 700.0)
         return np.asarray(1.0 / (1.0 + np.exp(power)))
@@ -84,18 +85,15 @@ class DoubleFilter(DampingFilter):
     def _start(self, dt: float) -> FusionCarry:
         steps_of(self.interval, dt)
         length = max(1, round(self.window / dt)) if self.mean == "window" else 0
-        return FusionCarry(start(self.model), np.zeros(14), np.zeros((length, 13)))
+        return FusionCarry(start(self.model, filters=2), np.zeros(14), np.zeros((length, 13)))
 
     def _run(self, state: DampingState, ins: InsSamples, v_ref: Array) -> tuple[FusionCarry, DampingSolution]:
-        from dataclasses import replace
-
         from bench.solvers.damping._filter_kernels import fuse
 
         before: FusionCarry = state.carry
         variance = change_variance(self.interval, self.change_noise, self.r2_reading)
         steps = steps_of(self.interval, state.dt)
-        carry, first, second = run(self, replace(state, carry=before.carry), ins, v_ref, steps, variance)
-        assert second is not None
+        carry, (first, second) = run(self, state, before.carry, ins, v_ref, steps, variance)
         sums, box = before.state.copy(), before.box.copy()
         gamma = self.gamma((state.rows + np.arange(len(ins))) * state.dt)
         x, sigma, weight = (np.empty_like(first.x) for _ in range(3))

@@ -13,12 +13,12 @@ from bench.solvers.damping._serial import Carry, run, start
 
 @dataclass(frozen=True)
 class VelocityChange(DampingFilter):
-    """Velocity change: a Kalman filter on the change of the velocity error over T, behind filter 1, which smooths.
+    """Velocity change: a Kalman filter on the change of the velocity error over T, smoothed by filter 1.
 
     Z = (1/T) int (B C_c f - A) dt - (v_s(t2) - v_s(t1))/T with v_s = v_INS - dv_1, filter 1's estimate, and
-    H = (1/T) int F_(1:2) Phi(t, t2) dt = (1/T) [I - Phi(t2, t1)^-1]_(1:2), since Phi' = F Phi (Eq. 2). A constant error of
-    the reference drops out; the price is that what changes slowly is seen slowly. Smoothed noise is not
-    white and depends on the filter's own errors, so that the covariance is not to be believed literally.
+    H = (1/T) int F_(1:2) Phi(t, t2) dt = (1/T) [I - Phi(t2, t1)^-1]_(1:2), since Phi' = F Phi (Eq. 2). A constant error
+    of the reference drops out; the price is that what changes slowly is seen slowly. Smoothed noise is not white and
+    depends on filter 1's errors, so that the covariance is not to be believed literally.
 
     Parameters
     ----------
@@ -51,10 +51,10 @@ class VelocityChange(DampingFilter):
 
     def _start(self, dt: float) -> Carry:
         steps_of(self.interval, dt)
-        return start(self.model)
+        return start(self.model, filters=2)
 
     def _run(self, state: DampingState, ins: InsSamples, v_ref: Array) -> tuple[Carry, DampingSolution]:
         variance = change_variance(self.interval, self.change_noise, self.r2_reading)
-        carry, first, second = run(self, state, ins, v_ref, steps_of(self.interval, state.dt), variance)
-        assert second is not None
+        steps = steps_of(self.interval, state.dt)
+        carry, (first, second) = run(self, state, state.carry, ins, v_ref, steps, variance)
         return carry, replace(second, parts=(first,))

@@ -14,8 +14,9 @@ from bench.solvers.damping._serial import Carry, run, start
 class VelocityError(DampingFilter):
     """Velocity error: a Kalman filter on INS minus reference velocity at every sample.
 
-    Z = v_INS - v_ref, H = [I 0] (Eq. 3). It settles at once, but a constant error of the reference becomes an error of the
-    velocity, and position and attitude drift in proportion to it: the filter is consistent without such an error only.
+    Z = v_INS - v_ref, H = [I 0] (Eq. 3). It settles at once, but a constant error of the reference becomes an error of
+    the velocity, and position and attitude drift in proportion to it: the filter is consistent without such an error
+    only.
 
     Parameters
     ----------
@@ -36,5 +37,5 @@ class VelocityError(DampingFilter):
         return start(self.model)
 
     def _run(self, state: DampingState, ins: InsSamples, v_ref: Array) -> tuple[Carry, DampingSolution]:
-        carry, solution, _ = run(self, state, ins, v_ref)
+        carry, (solution,) = run(self, state, state.carry, ins, v_ref)
         return carry, solution
