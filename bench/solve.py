@@ -158,7 +158,9 @@ def find_solver(name: str) -> tuple[str, type[Any]]:
     if len(found) > 1:
         raise InputError(f"solver must say which kind, {' or '.join(f'{kind}/{name}' for kind in found)}, got {name!r}")
     if not found:
-        raise UnknownNameError("solver", name, [name for kind in KINDS for name in known[kind]])
+        names = [name for kind in KINDS for name in known[kind]]
+        choices = [name if names.count(name) == 1 else f"{kind}/{name}" for kind in KINDS for name in known[kind]]
+        raise UnknownNameError("solver", name, choices)
     return found[0], known[found[0]][name]
 
 

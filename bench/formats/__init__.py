@@ -117,7 +117,7 @@ class Format(ABC):
             If the file is missing, malformed or truncated (file, line and column), holds NaN, its times are not
             regular, or its values suggest another unit than declared; with the fix.
         """
-        path, axes = _existing(path), self._declared_axes()
+        path, axes = existing_file(path), self._declared_axes()
         raw = self._read_imu(path)
         require_finite_rows(str(path), raw.t, where=raw.where)
         raw = within(raw, str(path), self.start, self.stop)
@@ -187,7 +187,7 @@ class Format(ABC):
         InputError
             If the file is missing, malformed or truncated, its times do not increase, or the format has none.
         """
-        return self._read_reference(_existing(path), earth, epoch_ns)
+        return self._read_reference(existing_file(path), earth, epoch_ns)
 
     @final
     def write_reference(
@@ -215,7 +215,7 @@ class Format(ABC):
         InputError
             If the format holds none, or as `read_imu`.
         """
-        return self._read_initial(_existing(path))
+        return self._read_initial(existing_file(path))
 
     def _declared_axes(self) -> str:
         if self.axes == "":
@@ -230,7 +230,14 @@ class Format(ABC):
         return from_rfu(recording.angular, axes), from_rfu(recording.specific, axes)
 
 
-def _existing(path: str | Path) -> Path:
+def existing_file(path: str | Path) -> Path:
+    """Return a path if it is that of a file.
+
+    Raises
+    ------
+    InputError
+        Otherwise.
+    """
     path = Path(path)
     if not path.is_file():
         raise InputError(f"path must be a file, got {str(path)!r}")

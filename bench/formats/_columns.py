@@ -1,10 +1,13 @@
 """Declared columns of a text file: found by name in its header, or by place where it has none."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
-from bench.errors import InputError, UnknownNameError
-from bench.formats._text import Layout, as_number, line_after
+from bench.errors import Array, InputError, UnknownNameError
+from bench.formats._text import Layout, as_number, line_after, read_numbers
+from bench.formats._times import NANOSECOND, seconds
 from bench.formats._units import Unit, recognised
 
 IGNORED = "-"
@@ -133,6 +136,38 @@ class Columns:
         items = zip(self.keys, self.names, strict=True)
         cells = [name if _split_unit(name)[1] else f"{name}{space}[{self.units[key].name}]" for key, name in items]
         return (separator or " ").join(cells)
+
+
+class Timed(NamedTuple):
+    """Times, the other columns in SI by key, what names a row's line, and the epoch that was subtracted."""
+
+    t: Array
+    data: dict[str, Array]
+    where: Callable[[int], str]
+    epoch_ns: int
+
+
+def read_columns(
+    path: Path, columns: Columns, delimiter: str, *, header: bool, skip: int, epoch_ns: int | None = None
+) -> Timed:
+    """Return what the declared columns of a file hold; the layout is that of `Columns.layout`.
+
+    Without a given `epoch_ns` it is found for times in nanoseconds, and 0 for others.
+
+    Raises
+    ------
+    InputError
+        If the header or a row is wrong, naming file, line and column.
+    """
+    table = read_numbers(path, columns.layout(path, delimiter, header=header, skip=skip))
+    keys, values = columns.used(), table.values
+    if table.integers is None:
+        t, found = values[:, 0] * columns.units["t"].size - (epoch_ns or 0) * NANOSECOND, 0
+        values = values[:, 1:]
+    else:
+        t, found = seconds(table.integers, epoch_ns)
+    data = {key: column * columns.units[key].size for key, column in zip(keys[1:], values.T, strict=True)}
+    return Timed(t, data, table.where, found)
 
 
 def _split_unit(cell: str) -> tuple[str, str]:

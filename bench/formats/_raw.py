@@ -47,6 +47,8 @@ def within(raw: RawImu, source: str, start: float | None, stop: float | None) ->
     InputError
         If less than two are there.
     """
+    if len(raw.t) < 2:
+        raise InputError(f"{source}: must hold two samples at least, got {len(raw.t)}")
     low, high = -np.inf if start is None else start, np.inf if stop is None else stop
     inside = (raw.t >= low) & (raw.t <= high)
     if np.count_nonzero(inside) < 2:

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from bench.errors import InputError, require_choice
-from bench.units import ARCSEC, DEG, DEG_PER_H, DEG_PER_S, FOOT, MILLI_G, STANDARD_GRAVITY
+from bench.units import ARCSEC, DEG, DEG_PER_H, DEG_PER_S, FOOT, KM_PER_H, KNOT, MILLI_G, STANDARD_GRAVITY
 
 TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
 ANGLE = {"rad": 1.0, "deg": DEG}
@@ -16,9 +16,17 @@ SPECIFIC = {
     "increments": {"m/s": 1.0, "g*s": STANDARD_GRAVITY, "ft/s": FOOT},
 }
 LENGTH = {"m": 1.0}
-SPEED = {"m/s": 1.0}
-_ALL = {unit for table in (TIME, LENGTH, *ANGULAR.values(), *SPECIFIC.values()) for unit in table}
-_SPELLINGS = {"m/s2": "m/s^2", "m/s/s": "m/s^2", "ft/s2": "ft/s^2", "dps": "deg/s", "µs": "us"}
+SPEED = {"m/s": 1.0, "km/h": KM_PER_H, "kn": KNOT}
+_ALL = {unit for table in (TIME, LENGTH, SPEED, *ANGULAR.values(), *SPECIFIC.values()) for unit in table}
+_SPELLINGS = {
+    "m/s2": "m/s^2",
+    "m/s/s": "m/s^2",
+    "ft/s2": "ft/s^2",
+    "dps": "deg/s",
+    "µs": "us",
+    "kph": "km/h",
+    "kt": "kn",
+}
 
 
 @dataclass(frozen=True)

@@ -9,10 +9,10 @@ import numpy as np
 from bench.earth import Earth
 from bench.errors import Array, InputError, require_choice, require_flag, require_integer
 from bench.formats import Format, RawImu
-from bench.formats._columns import DELIMITERS, IGNORED, Columns
-from bench.formats._reference import Where, geodetic_reference
-from bench.formats._text import read_numbers, write_numbers
-from bench.formats._times import NANOSECOND, nanoseconds, seconds
+from bench.formats._columns import DELIMITERS, IGNORED, Columns, Timed, read_columns
+from bench.formats._reference import geodetic_reference
+from bench.formats._text import write_numbers
+from bench.formats._times import NANOSECOND, nanoseconds
 from bench.formats._units import ANGLE, ANGULAR, LENGTH, SPECIFIC, SPEED, TIME, Unit, kind_of
 from bench.recording import Recording
 from bench.rotation import euler_from_quat, quat_from_euler, wrap
@@ -124,19 +124,8 @@ class Csv(Format):
         data |= {"roll": R, "pitch": P, "heading": wrap(-psi), "yaw": psi}
         self._write(path, self._reference_columns(), trajectory.t, data, epoch_ns)
 
-    def _read(
-        self, path: Path, columns: Columns, epoch_ns: int | None = None
-    ) -> tuple[Array, dict[str, Array], Where, int]:
-        """Return times, the other columns in SI, what names a row's line, and the epoch."""
-        table = read_numbers(path, columns.layout(path, self.delimiter, header=self.header, skip=self.skip))
-        keys, values = columns.used(), table.values
-        if table.integers is None:
-            t, found = values[:, 0] * columns.units["t"].size - (epoch_ns or 0) * NANOSECOND, 0
-            values = values[:, 1:]
-        else:
-            t, found = seconds(table.integers, epoch_ns)
-        data = {key: column * columns.units[key].size for key, column in zip(keys[1:], values.T, strict=True)}
-        return t, data, table.where, found
+    def _read(self, path: Path, columns: Columns, epoch_ns: int | None = None) -> Timed:
+        return read_columns(path, columns, self.delimiter, header=self.header, skip=self.skip, epoch_ns=epoch_ns)
 
     def _write(self, path: Path, columns: Columns, t: Array, data: dict[str, Array], epoch_ns: int) -> None:
         if IGNORED in columns.keys:
