@@ -1,4 +1,4 @@
-"""The runs of `damping-external-velocity`: a free INS on the rig's increments or by its error model, and the filters."""
+"""The runs of `damping-external-velocity`: a free INS on the rig's increments or by its error model, and filters."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
@@ -50,7 +50,7 @@ def told_initial(true: NavigationInitial, errors: Array) -> NavigationInitial:
     """Return what the INS is told at the start: the truth with errors dv, dL, dlambda, phi (7,)."""
     q_nb = quat_multiply(quat_from_rotvec(-errors[4:7]), true.q_nb)
     place = {"latitude": true.latitude + errors[2], "longitude": true.longitude + errors[3], "height": true.height}
-    return NavigationInitial(q_nb / np.linalg.norm(q_nb), true.v_n + [*errors[:2], 0.0], **place)
+    return NavigationInitial(q_nb / np.linalg.norm(q_nb), true.v_n + np.append(errors[:2], 0.0), **place)
 
 
 def free_ins(
@@ -188,7 +188,7 @@ def table_of(work: Work, chunks: Iterable[list[Damped]]) -> Table:
 
 def make_rows(count: int, **columns: Any) -> Table:
     """Return a table with all columns; those not given are NaN or empty."""
-    texts = ("part", "case", "name")
+    texts = ("part", "case", "name", "label")
     empty = {name: np.full(count, "" if name in texts else np.nan) for name in COLUMNS}
     given = {name: np.full(count, value) if np.ndim(value) == 0 else value for name, value in columns.items()}
     return Table({**empty, **given})

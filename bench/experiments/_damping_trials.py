@@ -20,13 +20,14 @@ HOUR = 3600.0
 STARTED, UNDER_WAY = 1000.0, 1100.0  # s: rest until, acceleration until
 VELOCITY = (10.0, 8.0)  # m/s, east and north
 SWAY = (1 * DEG, 2 * DEG, 5 * DEG)  # heading, pitch, roll
+WINDOW = 4 * HOUR  # of Xbar
 EVERY = 120  # samples of the INS (s) from one kept row to the next
 FREE, FIRST, SECOND, FUSION, AUGMENTED = "free INS", "filter 1", "filter 2", "fusion", "15 states"
 FILTERS = (FIRST, SECOND, FUSION, AUGMENTED)
 ERRORS = tuple(f"e_{name}" for name in STATES)
 SIGMAS = tuple(f"s_{name}" for name in STATES)
 WEIGHTS = tuple(f"w_{name}" for name in STATES[:13])
-COLUMNS = ("part", "case", "name", "t_h", "reference_m_per_s", "value", "nees", "nis", "gamma")
+COLUMNS = ("part", "case", "name", "label", "t_h", "reference_m_per_s", "value", "nees", "nis", "gamma")
 COLUMNS += (*ERRORS, *SIGMAS, *WEIGHTS)
 Part = Literal["ins", "fast", "scan", "consistency", "undamped"]
 
@@ -45,8 +46,6 @@ class Options:
         Constant errors of the reference velocity, the same east and north, m/s; the figures show the middle one.
     latitude : float
         Where the ship lies at the start, deg.
-    heading : str
-        Where the bow points all the time: "north", or "course" for the direction of travel.
     tau : float
         Correlation time of the sensor errors in the filters, s.
     reference_noise : float
@@ -55,7 +54,7 @@ class Options:
         13 signs of initial errors and sensor errors in the order of the error states: dv_E dv_N dL dlambda phi_E phi_N
         phi_U nabla_x nabla_y nabla_z eps_x eps_y eps_z; eps is minus the gyro's drift.
     mean : str
-        Xbar of the fusion: "cumulative", or "window" of an hour.
+        Xbar of the fusion: "cumulative", or "window" of four hours.
     sway : bool
         Roll (5 deg, 10 s), pitch (2 deg, 8 s) and heading (1 deg, 12 s) of the ship in waves.
     latitudes : tuple of float
@@ -72,11 +71,10 @@ class Options:
     rate: float = 100.0
     reference_errors: tuple[float, ...] = (-0.1, -0.2, -0.3, -0.4, -0.5)
     latitude: float = 48.0
-    heading: str = "north"
-    tau: float = 3600.0
+    tau: float = 1000.0
     reference_noise: float = 0.05
-    signs: str = "+++++++++++++"
-    mean: str = "cumulative"
+    signs: str = "++++++--++-++"
+    mean: str = "window"
     sway: bool = False
     latitudes: tuple[float, ...] = (40.0, 44.0, 48.0, 52.0, 56.0)
     taus: tuple[float, ...] = (1000.0, 3600.0)
@@ -101,7 +99,6 @@ class Options:
             raise InputError(f"latitudes must be within +-70 deg, got {(self.latitude, *self.latitudes)}")
         if min(self.taus) < 200:
             raise InputError(f"taus must be at least 200 s, got {self.taus}")
-        require_choice("heading", self.heading, ("north", "course"))
         require_choice("mean", self.mean, ("cumulative", "window"))
         require_flag("sway", self.sway)
         require_integer("trials", self.trials, minimum=2)
@@ -181,7 +178,6 @@ def ship(options: Options, latitude: float | None = None) -> Vehicle:
         speed=0.0,
         heading=course,
         follow=False,
-        attitude=(-course if options.heading == "course" else 0.0, 0.0, 0.0),
         swing=SWAY if options.sway else (0.0, 0.0, 0.0),
         swing_frequency=tuple(2 * np.pi / period for period in (12.0, 8.0, 10.0)),
         earth=SPHERE,
@@ -190,5 +186,5 @@ def ship(options: Options, latitude: float | None = None) -> Vehicle:
 
 def filters(options: Options, every: int = EVERY) -> tuple[DampingFilter, DampingFilter]:
     """Return the double filter (with filters 1 and 2 as its parts) and the one of 15 states."""
-    double = DoubleFilter(model=options.model, covariance_every=every, mean=options.mean)
+    double = DoubleFilter(model=options.model, covariance_every=every, mean=options.mean, window=WINDOW)
     return double, BiasAugmented(model=options.model, covariance_every=every)
