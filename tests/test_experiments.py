@@ -29,15 +29,6 @@ SHORT = {
     "dual-euler-turntable": {"trials": 1, "duration": 50.0, "rest": 5.0},
     "dual-euler-navigation": {"trials": 2, "duration": 50.0, "rest": 5.0},
     "gyro-free-circular": {"trials": 2, "duration": 6.0},
-    "damping-external-velocity": {
-        "duration": 0.5,
-        "rate": 10.0,
-        "reference_errors": (-0.1, -0.3),
-        "latitudes": (48.0,),
-        "taus": (1000.0,),
-        "trials": 2,
-        "undamped": 6.0,
-    },
     "attitude-cost": {"max_samples": 2, "repeats": 1, "timed_updates": 8},
     "attitude-limits": {"frequencies": 2, "half_angles": 2, "cycles": 4, "max_samples": 3},
 }
