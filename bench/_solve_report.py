@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from bench._damp_report import consistency_table, damping_figures
+from bench.damp import Damped
 from bench.errors import Array
 from bench.evaluation import rms
 from bench.figures import Figure, Line, Panel
@@ -19,15 +21,16 @@ from bench.units import DEG
 DRAWN = 4000  # points of a line
 DIRECTIONS = ("east", "north", "up")
 SINCE = "time since the start, s"
-REFERENCE, ESTIMATE = 6, 0  # colours of lines
+REFERENCE, ESTIMATE, DAMPED = 6, 0, 1  # colours of lines
+
+Shown = tuple[str, Trajectory, int]  # name, track and colour
 
 
-def trajectory_table(solution: Solution) -> Table:
+def trajectory_table(found: Trajectory, *, attitude_only: bool = False) -> Table:
     """Return time, position, velocity and attitude at every update; only time and attitude if no more was solved."""
-    found = solution.trajectory
     psi, pitch, roll = euler_from_quat(found.q_nb)
     columns = {"t_s": found.t}
-    if not solution.attitude_only:
+    if not attitude_only:
         columns |= {"latitude_rad": found.latitude, "longitude_rad": found.longitude, "height_m": found.height}
         columns |= {f"velocity_{name}_m_per_s": found.v_n[:, k] for k, name in enumerate(DIRECTIONS)}
     columns |= {f"q_nb_{name}": found.q_nb[:, k] for k, name in enumerate("wxyz")}
@@ -43,8 +46,8 @@ def error_table(errors: NavigationErrors, *, attitude_only: bool) -> Table:
     return Table(columns, "Solution minus reference, in east-north-up; attitude as rotation vector")
 
 
-def summary_table(errors: NavigationErrors, *, attitude_only: bool) -> Table:
-    """Return final, RMS and largest errors."""
+def summary_table(errors: NavigationErrors, *, attitude_only: bool, of: str = "") -> Table:
+    """Return final, RMS and largest errors, of what is named if there is more than one."""
     measures: list[tuple[str, Array]] = []
     for key, unit in (("position", "m"), ("velocity", "m/s"))[: 0 if attitude_only else 2]:
         value: Array = getattr(errors, key)
@@ -53,7 +56,24 @@ def summary_table(errors: NavigationErrors, *, attitude_only: bool) -> Table:
     measures.append(("attitude, level, deg", np.hypot(errors.attitude[:, 0], errors.attitude[:, 1]) / DEG))
     measures.append(("attitude, about up, deg", errors.attitude[:, 2] / DEG))
     rows = [(name, float(v[-1]), float(rms(v)), float(np.abs(v).max())) for name, v in measures]
-    return Table.from_rows(("error", "final", "RMS", "largest"), rows, "Errors against the reference")
+    title = "Errors against the reference" + (of and f", {of}")
+    return Table.from_rows(("error", "final", "RMS", "largest"), rows, title)
+
+
+def summary_tables(solution: Solution, damped: Damped | None) -> list[Table]:
+    """Return final, RMS and largest errors of the solution, and of the damped one; nothing without a reference."""
+    if solution.comparison is None:
+        return []
+    tables = [
+        summary_table(
+            solution.comparison.errors,
+            attitude_only=solution.attitude_only,
+            of=f"{solution.solver.name}, free" if damped else "",
+        )
+    ]
+    if damped is not None and damped.comparison is not None:
+        tables.append(summary_table(damped.comparison.errors, attitude_only=False, of=f"{damped.filter.name}, damped"))
+    return tables
 
 
 def states(solution: Solution) -> dict[str, dict[str, float]]:
@@ -81,24 +101,37 @@ def state_table(solution: Solution) -> Table:
     return Table.from_rows(("quantity", "start", "end"), rows, "State at the start and at the end")
 
 
-def solution_figures(solution: Solution) -> list[Figure]:
-    """Return track, velocity, attitude and, with a reference, errors."""
-    figures = [] if solution.attitude_only else [_track(solution), _velocity(solution)]
-    figures.append(_attitude(solution))
+def solution_figures(solution: Solution, damped: Damped | None = None) -> list[Figure]:
+    """Return track, velocity, attitude and, with a reference, errors; and what a filter found."""
+    shown = _shown(solution, damped)
+    figures = [] if solution.attitude_only else [_track(solution, shown), _velocity(shown)]
+    figures.append(_attitude(shown))
     if solution.comparison is not None:
-        figures.append(_errors(solution, solution.comparison.errors))
-    return figures
+        errors = {solution.solver.name: solution.comparison.errors}
+        if damped is not None and damped.comparison is not None:
+            errors[damped.filter.name] = damped.comparison.errors
+        figures.append(_errors(solution, errors))
+    return figures + ([] if damped is None else damping_figures(damped))
 
 
 def report_blocks(
-    title: str, summary: str, solution: Solution, facts: Mapping[str, Table], files: Mapping[str, Path]
+    title: str,
+    summary: str,
+    solution: Solution,
+    damped: Damped | None,
+    facts: Mapping[str, Table],
+    files: Mapping[str, Path],
 ) -> list[Block]:
     """Return the report: summary, errors, states, figures, and tables of facts by heading."""
     content: list[Block] = [Heading(title, 1), summary]
     if solution.comparison is not None:
-        content += [Heading("Errors"), _summary(solution)]
+        content.append(Heading("Errors"))
+        for table in summary_tables(solution, damped):
+            content += [f"{table.title}:", table] if damped else [table]
+    if damped is not None:
+        content += [Heading("Filter"), consistency_table(damped)]
     content += [Heading("States"), state_table(solution), Heading("Figures")]
-    for figure in solution_figures(solution):
+    for figure in solution_figures(solution, damped):
         content.append(Image(files[f"figure {figure.name}"], figure.caption))
     for heading, table in facts.items():
         content += [Heading(heading), table]
@@ -118,73 +151,71 @@ def _text(value: Any) -> str:
     return f"{value:.10g}" if isinstance(value, float) else str(value)
 
 
-def _summary(solution: Solution) -> Table:
-    assert solution.comparison is not None
-    return summary_table(solution.comparison.errors, attitude_only=solution.attitude_only)
-
-
-def _shown(solution: Solution) -> list[tuple[str, Trajectory, int]]:
-    """Return what is drawn: the reference below, the solution above it."""
+def _shown(solution: Solution, damped: Damped | None) -> list[Shown]:
+    """Return what is drawn, from below: the reference, the free solution, the damped one."""
     found = [(solution.solver.name, solution.trajectory, ESTIMATE)]
     if solution.comparison is not None:
         found.insert(0, ("reference", solution.comparison.reference, REFERENCE))
+    if damped is not None:
+        found.append((damped.filter.name, damped.trajectory, DAMPED))
     return found
 
 
-def _panel(solution: Solution, label: str, values: Sequence[Array]) -> Panel:
+def _panel(shown: Sequence[Shown], label: str, values: Sequence[Array]) -> Panel:
     """Return values of what is drawn over time."""
-    start = solution.trajectory.t[0]
+    start = shown[-1][1].t[0]
     lines = [
-        _line(name, track.t - start, value, colour)
-        for (name, track, colour), value in zip(_shown(solution), values, strict=True)
+        _line(name, track.t - start, value, colour) for (name, track, colour), value in zip(shown, values, strict=True)
     ]
     return Panel(SINCE, label, lines)
 
 
-def _line(label: str, x: Array, y: Array, colour: int) -> Line:
+def _line(label: str, x: Array, y: Array, colour: int, style: str = "-") -> Line:
     thin = slice(None, None, -(-len(x) // DRAWN))
-    return Line(label, x[thin], y[thin], colour)
+    return Line(label, x[thin], y[thin], colour, style)
 
 
-def _track(solution: Solution) -> Figure:
+def _track(solution: Solution, shown: Sequence[Shown]) -> Figure:
     main = solution.trajectory
     q_ne = quat_conjugate(main.q_en[0])
     lines = []
-    for name, track, colour in _shown(solution):
+    for name, track, colour in shown:
         enu = quat_rotate(q_ne, track.r_e - main.r_e[0])
         lines.append(_line(name, enu[:, 0], enu[:, 1], colour))
     horizontal = Panel("east of the start, m", "north of the start, m", lines, equal=True)
-    height = _panel(solution, "height, m", [track.height for _, track, _ in _shown(solution)])
+    height = _panel(shown, "height, m", [track.height for _, track, _ in shown])
     return Figure("track", "Track", "Track, in the level plane at the start, and height.", [horizontal, height], 2)
 
 
-def _velocity(solution: Solution) -> Figure:
-    tracks = [track for _, track, _ in _shown(solution)]
-    panels = [
-        _panel(solution, f"velocity {name}, m/s", [t.v_n[:, k] for t in tracks]) for k, name in enumerate(DIRECTIONS)
-    ]
+def _velocity(shown: Sequence[Shown]) -> Figure:
+    v_n = [track.v_n for _, track, _ in shown]
+    panels = [_panel(shown, f"velocity {name}, m/s", [v[:, k] for v in v_n]) for k, name in enumerate(DIRECTIONS)]
     return Figure("velocity", "Velocity", "Velocity relative to the Earth.", panels)
 
 
-def _attitude(solution: Solution) -> Figure:
-    angles = [euler_from_quat(track.q_nb) for _, track, _ in _shown(solution)]
+def _attitude(shown: Sequence[Shown]) -> Figure:
+    angles = [euler_from_quat(track.q_nb) for _, track, _ in shown]
     headings = [-np.unwrap(psi) / DEG for psi, _, _ in angles]
     headings = [h - 360 * np.round((h[0] - headings[-1][0] % 360) / 360) for h in headings]
     panels = [
-        _panel(solution, "heading, deg", headings),
-        _panel(solution, "pitch, deg", [pitch / DEG for _, pitch, _ in angles]),
-        _panel(solution, "roll, deg", [roll / DEG for _, _, roll in angles]),
+        _panel(shown, "heading, deg", headings),
+        _panel(shown, "pitch, deg", [pitch / DEG for _, pitch, _ in angles]),
+        _panel(shown, "roll, deg", [roll / DEG for _, _, roll in angles]),
     ]
     return Figure("attitude", "Attitude", "Heading (clockwise from north, without jumps), pitch and roll.", panels)
 
 
-def _errors(solution: Solution, errors: NavigationErrors) -> Figure:
+def _errors(solution: Solution, errors: Mapping[str, NavigationErrors]) -> Figure:
+    """Return the errors of the free solution, dashed below those of the damped one if there is one."""
     kinds = (("position", "m", 1.0), ("velocity", "m/s", 1.0), ("attitude", "deg", DEG))
-    t = errors.t - solution.trajectory.t[0]
+    start, several = solution.trajectory.t[0], len(errors) > 1
     panels = []
     for key, unit, scale in kinds[2 if solution.attitude_only else 0 :]:
-        value = getattr(errors, key) / scale
         about = "about " if key == "attitude" else ""
-        lines = [_line(f"{about}{name}", t, value[:, k], k) for k, name in enumerate(DIRECTIONS)]
+        lines = [
+            _line(f"{about}{name}{f', {who}' if several else ''}", e.t - start, getattr(e, key)[:, k] / scale, k, style)
+            for (who, e), style in zip(errors.items(), ("--", "-")[-len(errors) :], strict=True)
+            for k, name in enumerate(DIRECTIONS)
+        ]
         panels.append(Panel(SINCE, f"{key} error, {unit}", lines))
     return Figure("errors", "Errors", "Solution minus reference, in east-north-up at the reference.", panels)

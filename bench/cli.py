@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import tyro
 
-from bench.cli_recordings import REGISTRY, ExportCommand, SolveCommand, parse_export, parse_solve
+from bench._cli_types import REGISTRY
+from bench.cli_recordings import ExportCommand, SolveCommand, parse_export, parse_solve
 from bench.errors import BenchError, InputError
 
 if TYPE_CHECKING:

@@ -11,32 +11,18 @@ from typing import Annotated, Any, Literal, get_type_hints
 
 import tyro
 
-from bench.earth import WGS84, Earth, earth, earths
+from bench._cli_types import REGISTRY
+from bench.earth import WGS84, Earth
 from bench.errors import Array, InputError, UnknownNameError, require_choice
 
 Vector = tuple[float, float, float]
-REGISTRY = tyro.constructors.ConstructorRegistry()
-
-
-@REGISTRY.primitive_rule
-def _earth_by_name(info: Any) -> Any:
-    """Take an Earth model by its name."""
-    if info.type is not Earth:
-        return None
-    return tyro.constructors.PrimitiveConstructorSpec(
-        nargs=1,
-        metavar="{" + ",".join(earths()) + "}",
-        instance_from_str=lambda words: earth(words[0]),
-        is_instance=lambda value: isinstance(value, Earth),
-        str_from_instance=lambda value: [value.name],
-    )
 
 
 @dataclass(frozen=True)
 class SolveCommand:
     """Run a navigation or attitude solver on recorded data, and write solution, errors, figures and recording.
 
-    `strapbench solve --format NAME --solver NAME --initial NAME --help` shows the options of those.
+    `strapbench solve --format NAME --solver NAME --initial NAME --filter NAME --help` shows the options of those.
     """
 
     imu: Annotated[Path, tyro.conf.Positional]
@@ -63,6 +49,10 @@ class SolveCommand:
     """Its format; the default is that of the recording, with the same options."""
     interpolate: bool = True
     """Compare at all rows of the reference; otherwise only at those within 1 us of an update of the solver."""
+    aiding: Path | None = None
+    """File with an external velocity for a damping filter; `--aiding-format.columns` and units say what it holds."""
+    filter: str | None = None
+    """Damping filter, see `strapbench list`; the solver runs free, with --solver.height held."""
     record: bool = True
     """Write the Rerun recording."""
     force: bool = False
@@ -102,11 +92,14 @@ class ExportCommand:
 
 def parse_solve(words: Sequence[str]) -> Callable[[], None]:
     """Return what `strapbench solve` does with these words."""
+    from bench.aiding import VelocityFile
     from bench.formats import formats
     from bench.solve import find_solver
+    from bench.solvers import solvers
     from bench.starts import starts
 
-    names = {name: _value(words, name) for name in ("format", "solver", "initial", "reference_format")}
+    chosen_by_name = ("format", "solver", "initial", "reference_format", "aiding", "filter")
+    names = {name: _value(words, name) for name in chosen_by_name}
     parts: dict[str, tuple[type, bool]] = {}
     if names["format"]:
         parts["format"] = formats()[require_choice("format", names["format"], formats())], True
@@ -120,6 +113,11 @@ def parse_solve(words: Sequence[str]) -> Callable[[], None]:
             hint = "; values in a file: --initial file --file NAME"
             raise UnknownNameError("initial", names["initial"], starts(), hint)
         parts["initial"] = starts()[names["initial"]], False
+    if names["aiding"]:
+        parts["aiding_format"] = VelocityFile, True
+    if names["filter"]:
+        filters = solvers("damping")
+        parts["filter"] = filters[require_choice("filter", names["filter"], filters)], True
     common, found = _parse("solve", SolveCommand, parts, words)
     return lambda: _solve(common, found)
 
@@ -184,7 +182,8 @@ def _typeable(motion: type) -> type:
 
 
 def _solve(common: SolveCommand, parts: dict[str, Any]) -> None:
-    from bench._solve_report import state_table, summary_table
+    from bench._damp_report import consistency_table
+    from bench._solve_report import state_table, summary_tables
     from bench.progress import print_files, print_table, saying
     from bench.solve_job import SolveJob, run_job
 
@@ -200,11 +199,16 @@ def _solve(common: SolveCommand, parts: dict[str, Any]) -> None:
         reference=common.reference,
         reference_format=parts.get("reference_format"),
         interpolate=common.interpolate,
+        aiding=common.aiding,
+        aiding_format=parts.get("aiding_format"),
+        filter=parts.get("filter"),
     )
     outcome = run_job(job, common.out, force=common.force, record=common.record, reporter=saying())
     solution = outcome.solution
-    if solution.comparison is not None:
-        print_table(summary_table(solution.comparison.errors, attitude_only=solution.attitude_only))
+    for table in summary_tables(solution, outcome.damped):
+        print_table(table)
+    if outcome.damped is not None:
+        print_table(consistency_table(outcome.damped))
     print_table(state_table(solution))
     print(outcome.summary)
     print_files(outcome.files)

@@ -11,6 +11,9 @@ from typing import Any
 
 import numpy as np
 
+from bench._damp_report import damped_sentence
+from bench.aiding import VelocityAiding, VelocityFile
+from bench.damp import Damped, damp, require_held_height
 from bench.earth import WGS84, Earth
 from bench.errors import BenchWarning, InputError, require_array
 from bench.formats import Format
@@ -20,6 +23,7 @@ from bench.recording import Recording
 from bench.runner import COMPILING, Reporter
 from bench.solve import KINDS, ORIGIN, Solution, solve_recording, without_bias
 from bench.solvers.attitude import AttitudeSolver
+from bench.solvers.damping import DampingFilter
 from bench.solvers.navigation import NavigationSolver
 from bench.starts import Beginning, Given, Start
 from bench.starts.reference import StartReference
@@ -51,6 +55,12 @@ class SolveJob:
         The default is `format`.
     interpolate : bool
         Compare at all rows of the reference, not only at those at times of the solution.
+    aiding : Path, optional
+        External velocity for the filter.
+    aiding_format : VelocityFile, optional
+        How to read it; needed with it.
+    filter : DampingFilter, optional
+        Damps the solution, which must be of a navigation solver of held height; needs `aiding`.
     """
 
     imu: Path
@@ -64,8 +74,12 @@ class SolveJob:
     reference: Path | None = None
     reference_format: Format | None = None
     interpolate: bool = True
+    aiding: Path | None = None
+    aiding_format: VelocityFile | None = None
+    filter: DampingFilter | None = None
 
     def __post_init__(self) -> None:
+        self._check_damping()
         for name in ("gyro_bias_deg_per_h", "accelerometer_bias_micro_g"):
             require_array(name, getattr(self, name), (3,))
         if self.reference is None:
@@ -74,10 +88,19 @@ class SolveJob:
             if isinstance(self.start, StartReference):
                 raise InputError("initial 'reference' needs a reference, got none")
 
+    def _check_damping(self) -> None:
+        if (self.aiding is None) != (self.filter is None):
+            given = "the velocity alone" if self.filter is None else f"filter {self.filter.name!r} alone"
+            raise InputError(f"aiding and filter must be given together: a velocity, and what uses it; got {given}")
+        if (self.aiding is None) != (self.aiding_format is None):
+            raise InputError("aiding and aiding_format must be given together: columns and units must be declared")
+        if self.filter is not None:
+            require_held_height(self.solver)
+
     @property
     def title(self) -> str:
         """Of reports and recordings."""
-        return f"{self.imu.name}, {self.solver.name}"
+        return f"{self.imu.name}, {self.solver.name}" + (f" and {self.filter.name}" if self.filter else "")
 
     def inputs(self) -> dict[str, Any]:
         """Return what determines the result, as plain data; files by their contents."""
@@ -86,6 +109,8 @@ class SolveJob:
             "recording": {**_file(self.imu), "format": _options(self.format)},
             "reference": self.reference and {**_file(self.reference), "format": _options(judge)},
             "solver": {"kind": KINDS[isinstance(self.solver, AttitudeSolver)], **_options(self.solver)},
+            "aiding": self.aiding and {**_file(self.aiding), "format": vars(self.aiding_format)},
+            "filter": self.filter and _options(self.filter),
             "initial": _options(self.start),
             "interpolate": self.interpolate,
             "earth": self.earth.name,
@@ -109,6 +134,8 @@ class SolveOutcome:
         As read.
     beginning : Beginning
     solution : Solution
+    damped : Damped or None
+        If there is a filter.
     warnings : tuple of str
         What is doubtful in the files.
     files : dict of str to Path
@@ -120,6 +147,7 @@ class SolveOutcome:
     recording: Recording
     beginning: Beginning
     solution: Solution
+    damped: Damped | None = None
     warnings: tuple[str, ...] = ()
     files: dict[str, Path] = field(default_factory=dict)
 
@@ -171,6 +199,8 @@ class SolveOutcome:
             )
         if made.attitude_only:
             text += " Only attitude was solved; east-north-up is that of the place of the start."
+        if self.damped is not None:
+            text += damped_sentence(self.damped)
         return text + "".join(f" Warning: {doubt}." for doubt in self.warnings)
 
 
@@ -210,6 +240,7 @@ def run_job(
         say(f"Reading {job.imu} ({job.format.name}) ...")
         recording = job.format.read_imu(job.imu)
         reference = _reference(job, recording, say)
+        aiding = _aiding(job, recording, say)
     biases = np.array(job.gyro_bias_deg_per_h) * DEG_PER_H, np.array(job.accelerometer_bias_micro_g) * MICRO_G
     increments = without_bias(recording.as_increments(job.rule), *biases)
     if not is_compiled():
@@ -222,7 +253,11 @@ def run_job(
     solution = solve_recording(
         rest, job.solver, begin.initial, job.earth, reference=reference, interpolate=job.interpolate
     )
-    outcome = SolveOutcome(job, inputs, recording, begin, solution, tuple(doubts))
+    damped = None
+    if aiding is not None and job.filter is not None:
+        say(f"Damping with {job.filter.name} ...")
+        damped = damp(solution, aiding, job.filter)
+    outcome = SolveOutcome(job, inputs, recording, begin, solution, damped, tuple(doubts))
     if folder is None:
         return outcome
     from bench._solve_content import content_of
@@ -253,6 +288,13 @@ def _reference(job: SolveJob, recording: Recording, say: Callable[[str], None]) 
     return how.read_reference(job.reference, job.earth, epoch_ns=recording.epoch_ns)
 
 
+def _aiding(job: SolveJob, recording: Recording, say: Callable[[str], None]) -> VelocityAiding | None:
+    if job.aiding is None or job.aiding_format is None:
+        return None
+    say(f"Reading {job.aiding} (velocity) ...")
+    return job.aiding_format.read(job.aiding, epoch_ns=recording.epoch_ns)
+
+
 def _header(job: SolveJob) -> Any:
     if job.format.start is not None:
         raise InputError(f"initial 'header' is the state at the start of the file, got start = {job.format.start!r}")
@@ -277,6 +319,9 @@ def _file(path: Path) -> dict[str, Any]:
 
 
 def _options(chosen: Any) -> dict[str, Any]:
-    """Return name and options as plain data."""
-    plain = {name: str(value) if isinstance(value, Path) else value for name, value in asdict(chosen).items()}
+    """Return name and options as plain data; an infinity as text, for which JSON has no number."""
+    plain = {
+        name: str(value) if isinstance(value, Path) or value == np.inf else value
+        for name, value in asdict(chosen).items()
+    }
     return {"name": chosen.name, **plain}

@@ -14,6 +14,8 @@ DEG_PER_H = DEG / HOUR  # rad/s
 DEG_PER_SQRT_H = DEG / math.sqrt(HOUR)  # rad/sqrt(s), angle random walk = (rad/s)/sqrt(Hz)
 M_PER_S_PER_SQRT_H = 1.0 / math.sqrt(HOUR)  # (m/s)/sqrt(s), velocity random walk = (m/s^2)/sqrt(Hz)
 FOOT = 0.3048  # m, international
+KM_PER_H = 1.0 / 3.6  # m/s
+KNOT = 1852.0 / HOUR  # m/s, international nautical miles per hour
 STANDARD_GRAVITY = 9.80665  # m/s^2, CGPM 1901
 MILLI_G = 1e-3 * STANDARD_GRAVITY  # m/s^2
 MICRO_G = 1e-6 * STANDARD_GRAVITY  # m/s^2

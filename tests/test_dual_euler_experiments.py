@@ -12,7 +12,7 @@ from bench.experiments import _dual_euler_judging as judging
 from bench.experiments import _dual_euler_navigation_evaluation as navigation
 from bench.experiments._dual_euler_angle_trials import DUAL_ALONE, DUAL_INS, FORWARD_ALONE, QUATERNION_INS
 from bench.experiments._dual_euler_navigation_trials import COLUMNS, DUAL, QUATERNION, REPORTS, START, TRIED, Options
-from bench.experiments._dual_euler_runs import LATITUDE, RATE, DrivenTable, Felt, Swing, felt, reported
+from bench.experiments._dual_euler_runs import LATITUDE, RATE, DrivenTable, Swing, felt, reported
 from bench.motion.earth_rest import EarthRest
 from bench.rotation import quat_from_euler
 from bench.table import Table
@@ -122,37 +122,40 @@ class TestRuns:
     def test_the_table_moves_as_it_is_told(self):
         case = DrivenTable(0.15, rest=5.0, duration=50.0)
         pitch = track(case.motion().trajectory(np.array([0.0, 5.0, 50.0])).q_nb).forward[:, 1]
-        np.testing.assert_allclose(np.degrees(pitch), [0.0, 0.0, 0.15 * 45], atol=0.02)
+        np.testing.assert_allclose(np.degrees(pitch), [0.0, 0.0, 0.15 * 45], atol=0.1)  # fluctuations and lag
         assert case.label == "0.15 deg/s"
+
+
+SWAYING = EarthRest(latitude=LATITUDE, swing=(0.0, 60 * DEG, 0.0), swing_frequency=(1.0, 0.2, 1.0))
+
+
+@pytest.fixture(scope="module")
+def increments():
+    found = bench.Rig.load("imu", threads=1).increments(SWAYING, RATE, 60.0)
+    return found.dtheta_b, found.dvel
 
 
 class TestFirstOrderInertialNavigation:
     """The crude solver on a rotating body, against the closed-form truth of the motion."""
 
-    motion = EarthRest(latitude=LATITUDE, swing=(0.0, 60 * DEG, 0.0), swing_frequency=(1.0, 0.2, 1.0))
-
-    @pytest.fixture(scope="class")
-    def increments(self):
-        found = bench.Rig.load("imu", threads=1).increments(self.motion, RATE, 60.0)
-        return found.dtheta_b, found.dvel
-
     def error(self, increments, every=1, **options):
         fine = [part.reshape(-1, every, 3).sum(axis=1) for part in increments]
         solver = bench.solver("navigation", "first-order-quaternion", **options)
-        found = solver.solve(*fine, every / RATE, self.motion.navigation_initial(), self.motion.earth)
-        return navigation_errors(found, self.motion.trajectory(found.t))
+        found = solver.solve(*fine, every / RATE, SWAYING.navigation_initial(), SWAYING.earth)
+        return navigation_errors(found, SWAYING.trajectory(found.t))
 
     def test_half_an_update_too_early_or_too_late(self, increments):
         early, late = (self.error(increments, resolved=which).velocity[:, 1] for which in ("start", "end"))
         # dv/dt = -+ (P' T/2) g north: the integral of the rate is the pitch itself.
-        pitch = 60 * DEG * np.sin(0.2 * self.motion.trajectory(np.arange(6001) / RATE).t)
+        pitch = 60 * DEG * np.sin(0.2 * SWAYING.trajectory(np.arange(6001) / RATE).t)
         expected = 0.5 / RATE * pitch * 9.795
         np.testing.assert_allclose(early, expected, rtol=0, atol=0.01 * np.abs(expected).max())
         np.testing.assert_allclose(late, -expected, rtol=0, atol=0.01 * np.abs(expected).max())
 
     def test_compensated_it_is_a_hundred_times_better(self, increments):
         crude, better = (
-            np.abs(self.error(increments, resolved=which, height="held").velocity).max() for which in ("start", "middle")
+            np.abs(self.error(increments, resolved=which, height="held").velocity).max()
+            for which in ("start", "middle")
         )
         assert better < 0.01 * crude
 
@@ -164,15 +167,13 @@ class TestFirstOrderInertialNavigation:
     def test_the_norm_scales_the_specific_force(self, increments):
         """|q|^2 grows by the sum of |dtheta|^2/4, and the upward force with it."""
         fast = [part.copy() for part in increments]
-        grown, unit = (
-            self.error(fast, normalised=which).velocity[:, 2] for which in (False, True)
-        )
+        grown, unit = (self.error(fast, normalised=which).velocity[:, 2] for which in (False, True))
         square = np.cumsum(np.concatenate([[0.0], (fast[0] ** 2).sum(axis=1) / 4]))
         expected = 9.795 / RATE * np.cumsum(square)
         np.testing.assert_allclose(grown - unit, expected, rtol=0.02, atol=1e-3 * expected[-1])
 
     def test_options(self):
-        with pytest.raises(bench.UnknownNameError, match="unknown resolved 'late'; valid: start, middle, end"):
+        with pytest.raises(bench.UnknownNameError, match="unknown resolved 'late'; valid: end, middle, start"):
             bench.solver("navigation", "first-order-quaternion", resolved="late")
         with pytest.raises(bench.InputError, match="normalised must be True or False, got 1"):
             bench.solver("navigation", "first-order-quaternion", normalised=1)
@@ -185,7 +186,8 @@ class TestFirstOrderInertialNavigation:
 
 class TestJudging:
     @pytest.mark.parametrize(
-        ("true", "judgement"), [(100, "holds"), (95, "holds"), (94, "cannot be judged"), (6, "cannot be judged"), (5, "does not hold")]
+        ("true", "judgement"),
+        [(100, "holds"), (95, "holds"), (94, "cannot be judged"), (6, "cannot be judged"), (5, "does not hold")],
     )
     def test_shares(self, true, judgement):
         assert judging.judge_share(np.arange(100) < true, "", "").judgement == judgement
@@ -199,7 +201,9 @@ class TestJudging:
         verdict = judging.judge_bound(self.rows(largest_pitch_arcmin=np.linspace(0, 1, 100)), "pitch", 1.0)
         assert verdict.judgement == "holds"
         assert "median 0.5 arcmin" in verdict.measured
-        assert judging.judge_bound(self.rows(largest_pitch_arcmin=np.ones(100)), "pitch", 0.9).judgement == "does not hold"
+        assert (
+            judging.judge_bound(self.rows(largest_pitch_arcmin=np.ones(100)), "pitch", 0.9).judgement == "does not hold"
+        )
 
     def test_flag_without_changes_follows_nothing(self):
         rows = self.rows(flag_wrong_s=np.zeros(100), switches=np.zeros(100), true_switches=np.zeros(100))
@@ -213,7 +217,10 @@ class TestJudging:
         for trial, share in enumerate(ratio):
             for algorithm in TRIED:
                 size = (share if algorithm is DUAL else 1.0) * (1 + trial)
-                rows += [("trial", "0.15 deg/s", algorithm.label, trial, 100.0 * (k + 1), *[size] * 3) for k in range(REPORTS)]
+                rows += [
+                    ("trial", "0.15 deg/s", algorithm.label, trial, 100.0 * (k + 1), *[size] * 3)
+                    for k in range(REPORTS)
+                ]
         return navigation.Results(Options(rates=(0.15,)), Table.from_rows(COLUMNS, rows))
 
     def test_reduction(self):
@@ -223,7 +230,7 @@ class TestJudging:
             np.testing.assert_allclose(found[:, 0, 2], np.linspace(20, 0, 200), atol=1e-9)
         samples = {("c", "a"): results.reduction("0.15 deg/s", QUATERNION)[:, 0, 2]}
         assert navigation.judge_number(9.81, samples).judgement == "holds"
-        assert "50." in navigation.judge_number(10.02, samples).reason  # its percentile
+        assert navigation.judge_number(10.02, samples).reason.endswith(" 50")  # its percentile
         assert navigation.judge_number(19.9, samples).judgement == "does not hold"
 
     def test_both_numbers_must_be_in_reach_together(self):

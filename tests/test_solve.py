@@ -1,5 +1,7 @@
 """Solving a recording. Truth: a unit that stands, in closed form; an added bias; rotations of scipy."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -47,7 +49,7 @@ def test_an_attitude_solver_turns_with_the_earth():
     np.testing.assert_array_equal(found.v_e, np.zeros((len(found), 3)))
     np.testing.assert_allclose(found.latitude, LATITUDE, rtol=1e-15)
     # On an Earth that does not turn at all the standing unit would turn by what its gyro sees.
-    still = type(SPHERE)(**{**SPHERE.__dict__, "rate": 0.0})
+    still = replace(SPHERE, rate=0.0)
     q = solve_recording(standing(), ATTITUDE, initial(), still).trajectory.q_eb
     turned = (rotation(q[0]).inv() * rotation(q[-1])).as_rotvec()
     np.testing.assert_allclose(turned, OMEGA_B * 9.99, rtol=1e-9)

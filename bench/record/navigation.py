@@ -1,6 +1,6 @@
 """A navigation run as a recording: tracks on a map and in space, attitude, errors, motion and texts, with a layout."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -46,6 +46,8 @@ class NavigationRun:
         The estimates know neither velocity nor position: no tracks, and of errors only those of attitude.
     figures : mapping of str to Path
         PNG files, by title.
+    pages : mapping of str to sequence of TimedPlot
+        Further plots, a tab each, by title.
 
     Raises
     ------
@@ -63,6 +65,7 @@ class NavigationRun:
     exaggeration: float | None = None
     attitude_only: bool = False
     figures: Mapping[str, Path] = field(default_factory=dict)
+    pages: Mapping[str, Sequence[TimedPlot]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if not self.estimates:
@@ -100,9 +103,11 @@ def write_navigation_recording(
         if count is not None:
             require_integer(name, count, minimum=1)
     parts = {name: entity_part(name) for name in run.estimates}
-    pages = navigation_plots(
-        run.truth, run.estimates, parts, estimate_colours(run.estimates), attitude_only=run.attitude_only
-    )
+    colours = estimate_colours(run.estimates)
+    pages: dict[str, Sequence[TimedPlot]] = {
+        **navigation_plots(run.truth, run.estimates, parts, colours, attitude_only=run.attitude_only),
+        **run.pages,
+    }
     found = {name: estimate.trajectory for name, estimate in run.estimates.items()}
     tracks = Tracks.of(run.truth, found, run.truth_name)
     judged = _attitudes(run)
@@ -120,7 +125,7 @@ def write_navigation_recording(
         # Drawn in alphabetical order: one line below another that coincides with it shows at its edges.
         widths = dict(zip(sorted(parts, key=str.casefold), np.linspace(2.2, 1.0, len(parts)), strict=True))
         for t, line in (line for plots in pages.values() for plot in plots for line in plot.lines):
-            send_trace(rec, t, line, thinned(t, plot_rows), widths.get(line.series[0], 0.0))
+            send_trace(rec, t, line, thinned(t, plot_rows), widths.get(line.series[0], 1.3))
     return path
 
 
@@ -137,7 +142,7 @@ def _attitudes(run: NavigationRun) -> dict[str, AttitudeEstimate]:
 
 
 def _blueprint(
-    run: NavigationRun, tracks: Tracks, triads: Triads | None, pages: Mapping[str, list[TimedPlot]]
+    run: NavigationRun, tracks: Tracks, triads: Triads | None, pages: Mapping[str, Sequence[TimedPlot]]
 ) -> rrb.Blueprint:
     times = [estimate.trajectory.t for estimate in run.estimates.values()]
     start, end = min(t[0] for t in times), max(t[-1] for t in times)
@@ -160,6 +165,7 @@ def _blueprint(
         tabs.append(rrb.Grid(*views("Errors by axis"), grid_columns=columns, name="Errors by axis"))
         tabs.append(rrb.Vertical(*triads.views(), name="Attitude errors"))
     tabs.append(rrb.Grid(*views("Motion"), grid_columns=1 if run.attitude_only else 2, name="Motion"))
+    tabs += [rrb.Grid(*views(page), grid_columns=min(3, len(pages[page])), name=page) for page in run.pages]
     if run.figures:
         figures = [rrb.Spatial2DView(origin=f"/figures/{k}", name=title) for k, title in enumerate(run.figures)]
         tabs.append(rrb.Tabs(*figures, name="Figures"))
