@@ -99,9 +99,10 @@ def gravitation(p, x, y, z):
 @njit
 def _j2(p, x, y, z):
     r2 = x * x + y * y + z * z
-    ratio = z * z / r2
-    k = 1.5 * p[4] * p[0] * p[0] / r2
-    scale = -p[2] / (r2 * math.sqrt(r2))
+    inverse = 1.0 / r2
+    ratio = z * z * inverse
+    k = 1.5 * p[4] * p[0] * p[0] * inverse
+    scale = -p[2] * inverse * inverse * math.sqrt(r2)  # no second division: every update of a solver waits for this
     across = scale * (1.0 + k * (1.0 - 5.0 * ratio))
     return across * x, across * y, scale * (1.0 + k * (3.0 - 5.0 * ratio)) * z
 

@@ -42,20 +42,21 @@ class Csv(Format):
         (accelerometer), between commas. With a header in any order, as ``key`` or ``key=name in the header``; without
         one all columns in their order, ``-`` for one that is not read.
     time_unit : {"s", "ms", "us", "ns"}
-        ns are integers; too long ones give the recording an `epoch_ns`.
+        s, ms, us or ns. ns are integers; too long ones give the recording an `epoch_ns`.
     angular_unit : {"rad/s", "mrad/s", "deg/s", "deg/h"} or {"rad", "mrad", "deg", "arcsec"}
-        Of rates, or of increments over the interval that ends at t.
+        Of rates: rad/s, mrad/s, deg/s or deg/h. Of increments over the interval that ends at t: rad, mrad, deg or
+        arcsec.
     specific_unit : {"m/s^2", "g", "mg", "ft/s^2"} or {"m/s", "g*s", "ft/s"}
-        g is 9.80665 m/s^2.
+        Of rates: m/s^2, g, mg or ft/s^2. Of increments: m/s, g*s or ft/s. g is 9.80665 m/s^2.
     reference_columns : str
         As `columns`, of a file with a reference: t, lat, lon, h, vn, ve, vd or vu, roll, pitch, heading (clockwise from
         north) or yaw (anticlockwise). Roll and pitch are the aerospace angles, h in m, velocities in m/s.
     angle_unit : {"rad", "deg"}
-        Of the reference's latitude, longitude, roll, pitch, heading or yaw.
+        rad or deg, of the reference's latitude, longitude, roll, pitch, heading or yaw.
     header : bool
         The first line holds the names; a unit in brackets behind a name must agree with the declared one.
     delimiter : {",", ";", "tab", "space"}
-        "space" is any white space.
+        The character, or the word tab or space; "space" is any white space.
     skip : int
         Lines to skip before the header or the first row.
     """

@@ -256,7 +256,7 @@ class NavigationSolver(ABC):
 
     def _solution(self, state: NavigationState, first: int, columns: list[Array]) -> Trajectory:
         """Return attitude, velocity and position at the updates from number `first` on."""
-        t = (first + np.arange(len(columns[0]))) * (self.samples * state.dt)
+        t = np.arange(first, first + len(columns[0]), dtype=np.float64) * (self.samples * state.dt)
         try:
             return Trajectory(state.earth, t, *columns)
         except InputError as error:  # not of the caller's making

@@ -38,14 +38,18 @@ def place(p, c, s, h):
 
     Gravity is gravitation and centrifugal acceleration: the same on every meridian.
     """
-    w2 = 1.0 - p[1] * s * s
-    R_N = p[0] / math.sqrt(w2)
+    return place_of_radius(p, c, s, h, p[0] / math.sqrt(1.0 - p[1] * s * s))
+
+
+@njit
+def place_of_radius(p, c, s, h, R_N):
+    """Return `place` where R_N is known."""
     polar = R_N * (1.0 - p[1])
     rho = (R_N + h) * c
     out, _, z = gravitation(p, rho, 0.0, (polar + h) * s)
     out = out + p[3] * p[3] * rho
     across = 1.0 / (R_N + h)
-    return c * z - s * out, c * out + s * z, across, across * R_N * p[1] / (polar + h * w2)
+    return c * z - s * out, c * out + s * z, across, across * R_N * p[1] / (polar + h * (1.0 - p[1] * s * s))
 
 
 @njit
@@ -89,15 +93,14 @@ def unit_frame(north, f0, f1, f2, f3):
 
 
 @njit
-def north_step(p, across, b, h, f0, f1, f2, f3, cosine, sine, middle, earth, dx, dy, dz):
+def north_step(across, b, arm, f0, f1, f2, f3, cosine, sine, middle, earth, dx, dy, dz):
     """Return the frame after the displacement d in axes 0, the gain of height, the turn of n in i reversed, and dlon.
 
-    ``dlon = atan(dx / (rho - dy sinL + dz cosL))``; what remains lies in the new meridian and is resolved in n half-way
-    in latitude. cosine and sine are of the latitude at the start, middle is the cosine half-way. The turn is that of
-    dlon and the Earth about its axis, then of -dL about east.
+    ``dlon = atan(dx / (arm cosL - dy sinL + dz cosL))``, arm = R_N + h; what remains lies in the new meridian and is
+    resolved in n half-way in latitude. arm, cosine and sine of the latitude are those at the start, `middle` is the
+    cosine half-way. The turn is that of dlon and the Earth about its axis, then of -dL about east.
     """
-    rho = (p[0] / math.sqrt(1.0 - p[1] * sine * sine) + h) * cosine
-    t = dx / (rho - sine * dy + cosine * dz)
+    t = dx / (arm * cosine - sine * dy + cosine * dz)
     longitude, sag = t * (1.0 - t * t * (1 / 3)), 0.5 * dx * t
     dy, dz = dy - sine * sag, dz + cosine * sag
     curvature = across + b * middle * middle
@@ -163,14 +166,19 @@ def update(p, T, scrolling, north, held, every, first, turn, count, carry, state
             return u
         hx, hy, hz = level_turn(north, across, b, kx, ky, kz, mx, my)
         ax, ay, az = kx, ky, kz
+        # R_N half-way by a series from that at the start: a root and a division that nothing has to wait for.
+        inverse = 1.0 / (1.0 - p[1] * az * az)
+        R_N = p[0] * math.sqrt(inverse)
         kx, ky, kz = turned_axis(north, kx, ky, kz, hx, hy, hz)
+        delta = p[1] * (kz - az) * (kz + az) * inverse
+        R_m = R_N * (1.0 + delta * (0.5 + 0.375 * delta))
         middle = h if held else h + mz + 0.5 * (hy * mx - hx * my)
         if north:
             gx = 0.0
-            gy, gz, across, b = place(p, ky, kz, middle)
+            gy, gz, across, b = place_of_radius(p, ky, kz, middle, R_m)
         else:
             cosine = math.sqrt(kx * kx + ky * ky)
-            level, gz, across, b = place(p, cosine, kz, middle)
+            level, gz, across, b = place_of_radius(p, cosine, kz, middle, R_m)
             level = level / cosine if cosine > 0.0 else 0.0
             gx, gy = level * kx, level * ky
 
@@ -199,7 +207,7 @@ def update(p, T, scrolling, north, held, every, first, turn, count, carry, state
         f0, f1, f2, f3 = unit_frame(north, f0, f1, f2, f3)
         if north:
             f0, f1, f2, f3, lift, w, x, y, z, step = north_step(
-                p, across, b, h, f0, f1, f2, f3, ay, az, ky, earth, rx, ry, rz
+                across, b, R_N + h, f0, f1, f2, f3, ay, az, ky, earth, rx, ry, rz
             )
             if step < -LARGEST_STEP or step > LARGEST_STEP:  # not a number goes on, for the caller to find
                 return u

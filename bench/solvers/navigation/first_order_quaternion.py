@@ -83,5 +83,6 @@ class FirstOrderQuaternion(NavigationSolver):
     def _update(self, constants: tuple[Any, ...], increments: Array, first: int, carry: Array, out: Array) -> None:
         from bench.solvers.navigation._first_order_quaternion_kernels import navigate
 
+        parameters, T = constants
         moment, holds = MOMENTS[self.resolved], self.height == "held"
-        navigate(*constants, moment, self.normalised, holds, increments, carry, out)
+        navigate(parameters, T, moment, self.normalised, holds, increments, carry, out)

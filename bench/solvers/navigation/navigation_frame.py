@@ -114,7 +114,8 @@ class NavigationFrame(NavigationSolver):
         exact, scrolls = self.rotation == "exact", self.position == "scrolling"
         north, holds = self.azimuth == "north", self.height == "held"
         every = self.compensate_every
-        done = navigate(*constants, exact, scrolls, north, holds, every, increments, first, carry, out)
+        p, S, a, L, T = constants
+        done = navigate(p, S, a, L, T, exact, scrolls, north, holds, every, increments, first, carry, out)
         if done < len(out):
             raise AccuracyError(
                 f"{self.name} changes its longitude too fast in update {first + done}, next to a pole: "
