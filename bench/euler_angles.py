@@ -34,9 +34,10 @@ class DualAngles:
     Attributes
     ----------
     forward : ndarray, shape (n, 3), rad
-        psi, P, R; continuous, not wrapped.
+        psi, P, R; not wrapped; continuous but for half a degree round their own pole, behind which they go on with the
+        branch that the body is on.
     reverse : ndarray, shape (n, 3), rad
-        psi_r, P_r, R_r; continuous, not wrapped.
+        psi_r, P_r, R_r; likewise.
     flag : ndarray of int, shape (n,)
         1 where the forward set is active, -1 where the reverse set is.
     """

@@ -19,6 +19,7 @@ from bench.table import Table
 
 ROOT = Path(__file__).parents[1]
 
+
 def square(work):
     return Table({"value": np.array([work, work**2], dtype=float), "name": np.array([f"item {work}"] * 2)})
 

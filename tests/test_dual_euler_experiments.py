@@ -201,9 +201,11 @@ class TestJudging:
         verdict = judging.judge_bound(self.rows(largest_pitch_arcmin=np.linspace(0, 1, 100)), "pitch", 1.0)
         assert verdict.judgement == "holds"
         assert "median 0.5 arcmin" in verdict.measured
-        assert (
-            judging.judge_bound(self.rows(largest_pitch_arcmin=np.ones(100)), "pitch", 0.9).judgement == "does not hold"
-        )
+        above = self.rows(largest_pitch_arcmin=np.ones(100))
+        assert judging.judge_bound(above, "pitch", 0.9).judgement == "does not hold"
+        lost = judging.judge_bound(above, "pitch", 0.9, sensors_lost=True)
+        assert lost.judgement == "cannot be judged"
+        assert "the table of the simulation's sensors is lost" in lost.reason
 
     def test_flag_without_changes_follows_nothing(self):
         rows = self.rows(flag_wrong_s=np.zeros(100), switches=np.zeros(100), true_switches=np.zeros(100))

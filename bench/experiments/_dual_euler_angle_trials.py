@@ -64,7 +64,7 @@ def attitudes(fixed: Felt, name: str, increments: tuple[Array, Array], samples: 
         return found.t, found.q_nb
     start, earth = fixed.motion.trajectory(np.zeros(1)), fixed.motion.earth
     q = attitude_solver(name, samples).solve(increments[0], 1 / RATE, start.q_nb[0])[rows]
-    t = np.arange(len(q)) * (EVERY / RATE)
+    t = np.arange(len(q), dtype=np.float64) * (EVERY / RATE)
     axis_n = quat_rotate(quat_conjugate(start.q_en[0]), earth.omega_ie)
     return t, quat_normalize(quat_multiply(quat_from_rotvec(-t[:, None] * axis_n), q))
 

@@ -24,7 +24,7 @@ LARGEST = tuple(f"largest_{name}_arcmin" for name in NAMES)
 AWAY_ERRORS = tuple(f"away_{name}_arcmin" for name in NAMES)
 PLAIN_ERRORS = tuple(f"plain_{name}_deg" for name in NAMES)
 MEASURES = (
-    *("t_s", *ERRORS, *LARGEST, *AWAY_ERRORS, *PLAIN_ERRORS, "step_deg", "flag_wrong_s"),
+    *("t_s", *ERRORS, *LARGEST, *AWAY_ERRORS, *PLAIN_ERRORS, "step_deg", "output_off_deg", "flag_wrong_s"),
     *("switches", "true_switches", "wiggle_true_arcmin", "wiggle_error_arcmin"),
 )
 SETS = ("true", "true_active", "output", "plain", "forward", "reverse")
@@ -69,8 +69,10 @@ class Judged:
         step = np.abs(wrap(np.diff(self.estimate.active, axis=0) - np.diff(self.truth.active, axis=0)))
         same = (np.diff(self.estimate.flag) == 0) & (np.diff(self.truth.flag) == 0)
         step = np.where(same[:, None], step, 0.0).max(axis=1, initial=0.0, keepdims=True)
-        folded = np.abs(np.arcsin(np.clip(np.sin(pitch), -1.0, 1.0)))  # the flag must be -1 above 50 degrees
-        wrong = np.where(folded > 50 * DEG, self.estimate.flag > 0, (folded < 40 * DEG) & (self.estimate.flag < 0))
+        off = np.abs(wrap(self.estimate.active - self.truth.active)).max(axis=1, keepdims=True)
+        off = np.where((self.estimate.flag == self.truth.flag)[:, None], off, 0.0)
+        folded = np.abs(np.arcsin(np.clip(np.sin(pitch), -1.0, 1.0)))  # 50 and 40 deg, give or take the error
+        wrong = np.where(folded > 50.1 * DEG, self.estimate.flag > 0, (folded < 39.9 * DEG) & (self.estimate.flag < 0))
         columns = [
             self.t[:, None],
             self.error / ARCMIN,
@@ -78,6 +80,7 @@ class Judged:
             _largest(away) / ARCMIN,
             _largest(plain) / DEG,
             _largest(np.concatenate([np.zeros((1, 1)), step])) / DEG,
+            _largest(off) / DEG,
             np.cumsum(wrong, axis=0)[:, None] * T,
             _switches(self.estimate.flag),
             _switches(self.truth.flag),

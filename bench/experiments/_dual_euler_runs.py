@@ -180,5 +180,3 @@ def not_the_papers(options: object, defaults: object, trials: int) -> str:
     if changed:
         return "; ".join(changed)
     return f"{trials} trials are too few, at least {ENOUGH} are needed" if trials < ENOUGH else ""
-
-

@@ -124,17 +124,21 @@ def instrumented_body(model: Any) -> int:
     return int(model.site_bodyid[model.sensor_objid[sensing[0]]])
 
 
-def body_shapes(model: Any, body: int) -> tuple[Shape, ...]:
-    """Return the visible shapes of a body and of the bodies below it, as in the model's reference pose.
+def body_shapes(model: Any, body: int, *, below: bool = True) -> tuple[Shape, ...]:
+    """Return the visible shapes of a body and, unless told otherwise, of those below it in the model's reference pose.
 
     Parameters
     ----------
     model : mujoco.MjModel
     body : int
         Number of the body; its frame is that of the result.
+    below : bool
+        Whether the bodies below it belong to it; not if they move against it.
     """
     shapes = []
     for k in range(model.ngeom):
+        if not below and model.geom_bodyid[k] != body:
+            continue
         shape = _shape(model, k)
         placed = None if shape is None else _place(model, int(model.geom_bodyid[k]), body, shape)
         if placed is not None and model.geom_group[k] < SHOWN_GROUPS:
