@@ -74,9 +74,7 @@ def test_every_motion_of_the_package_is_named_like_its_file():
 
 
 def test_unknown_solver_and_kind_list_the_valid_ones():
-    with pytest.raises(
-        bench.UnknownNameError, match=r"unknown kind of solver 'gyrofree'.*valid: attitude, damping, gyro-free"
-    ):
+    with pytest.raises(bench.UnknownNameError, match=r"unknown kind .*'gyrofree'.*valid: attitude, damping, gyro-free"):
         bench.solver("gyrofree", "nine-accelerometer")
     with pytest.raises(bench.UnknownNameError, match=r"did you mean 'nine-accelerometer'.*six-accelerometer"):
         bench.solver("gyro-free", "nine-acelerometer")
