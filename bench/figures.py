@@ -121,7 +121,7 @@ def draw(figure: Figure, path: Path) -> None:
 
 
 def _draw_panel(axes: "Axes", panel: Panel) -> None:
-    from matplotlib.ticker import LogLocator
+    from matplotlib.ticker import LogLocator, MaxNLocator
 
     for line in panel.lines:
         colour = COLOURS[line.colour % len(COLOURS)]
@@ -148,6 +148,8 @@ def _draw_panel(axes: "Axes", panel: Panel) -> None:
             axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high < 1e3 * low else (1.0,)))
             axis.set_major_formatter(lambda value, _: f"{value:g}")
             axis.set_minor_formatter("")
+        else:
+            axis.set_major_locator(MaxNLocator(6, steps=[1, 2, 2.5, 5, 10]))  # long numbers stay apart
     axes.set(xlabel=panel.xlabel, ylabel=panel.ylabel)
     axes.set_title(panel.title, fontsize=10)
     axes.grid(True, alpha=0.3)

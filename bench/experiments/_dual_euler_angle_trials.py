@@ -1,6 +1,7 @@
 """The work of `dual-euler-swing` and `dual-euler-turntable`: attitudes by every algorithm, ideal and with the IMU."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -69,10 +70,16 @@ def attitudes(fixed: Felt, name: str, increments: tuple[Array, Array], samples: 
     return t, quat_normalize(quat_multiply(quat_from_rotvec(-t[:, None] * axis_n), q))
 
 
+@lru_cache(maxsize=2)
+def true_attitudes(fixed: Felt, n: int) -> Array:
+    """Return the true q_nb at n times, `EVERY` increments apart: the same in every trial."""
+    return fixed.motion.trajectory(np.arange(n) * (EVERY / RATE)).q_nb
+
+
 def judge(fixed: Felt, name: str, increments: tuple[Array, Array], samples: int = 1) -> Judged:
     """Return the angles of an algorithm beside the true ones."""
     t, q = attitudes(fixed, name, increments, samples)
-    return Judged.of(t, q, fixed.motion.trajectory(t).q_nb)
+    return Judged.of(t, q, true_attitudes(fixed, len(t)))
 
 
 def measure(work: Work) -> Table:
