@@ -73,7 +73,7 @@ def attitudes(fixed: Felt, name: str, increments: tuple[Array, Array], samples: 
 @lru_cache(maxsize=2)
 def true_attitudes(fixed: Felt, n: int) -> Array:
     """Return the true q_nb at n times, `EVERY` increments apart: the same in every trial."""
-    return fixed.motion.trajectory(np.arange(n) * (EVERY / RATE)).q_nb
+    return fixed.motion.trajectory(np.arange(n, dtype=np.float64) * (EVERY / RATE)).q_nb
 
 
 def judge(fixed: Felt, name: str, increments: tuple[Array, Array], samples: int = 1) -> Judged:

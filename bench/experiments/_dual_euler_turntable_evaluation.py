@@ -32,8 +32,8 @@ from bench.table import Table
 from bench.units import ARCMIN, DEG
 
 BOUND = 2.0  # arcmin, printed
-FOLLOWS = 0.3  # of the fluctuation: less than a tenth of its variance is missed
-STABLE = 1.4  # half-way between an error that stays and one that grows with time, from 0.5 to 0.9 of the run
+FOLLOWS = 0.1  # of the fluctuation: what is missed does not show beside it
+STABLE = 1.1  # the error of the last fifth is that of the third, to a tenth
 SMALL = 0.05
 ACCURACY = 0.0001 * DEG  # of the table's angles, stated
 NEAR = 89.0  # deg
