@@ -151,12 +151,18 @@ if __name__ == "__main__":
 """
 
 
+def heed_ctrl_c():
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # a shell's background job, and so its children, would ignore it
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGKILL])
 def test_workers_end_with_their_parent(tmp_path, end):
     (tmp_path / "sleeper.py").write_text(SLEEPER)
     command = [sys.executable, str(tmp_path / "sleeper.py"), str(tmp_path)]
-    process = subprocess.Popen(command, stderr=subprocess.PIPE, env={**os.environ, "PYTHONPATH": str(ROOT)})
+    process = subprocess.Popen(
+        command, stderr=subprocess.PIPE, env={**os.environ, "PYTHONPATH": str(ROOT)}, preexec_fn=heed_ctrl_c
+    )
     deadline = time.monotonic() + 60
     while not (tmp_path / "started1").exists() or not (tmp_path / "started2").exists():
         assert time.monotonic() < deadline

@@ -106,7 +106,14 @@ def test_ctrl_c_keeps_finished_parts_and_the_run_can_be_continued(tmp_path):
     out = tmp_path / "r"
     command = [sys.executable, "-m", "bench.cli", "run", "gyro-free-circular", "--out", str(out), "--no-record"]
     command += ["--trials", "100", "--jobs", "2"]
-    child = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, start_new_session=True)
+    child = subprocess.Popen(
+        command,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+        # A shell's background job, and so its children, would ignore it.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )
     deadline = time.monotonic() + 60
     while len(list(out.glob("parts/*.parquet"))) < 3:
         assert time.monotonic() < deadline
