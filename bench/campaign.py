@@ -208,6 +208,7 @@ def _run_on(
         if isinstance(executor, ProcessPoolExecutor):  # what they have in hand is small, and made again on resuming
             for process in list((executor._processes or {}).values()):
                 process.terminate()
+            pending.clear()  # the broken pool settles them itself, and stumbles over those that are cancelled
         raise
     finally:
         for future in pending:
