@@ -171,7 +171,7 @@ def test_it_is_faster_than_pyins(peer, ours):
     calls = (lambda: solved(ours), peer.loop, peer.solve)
     end = time.perf_counter() + PATIENCE
     for tries in range(1000):
-        if tries >= 5 and (best[1] > 2 * best[0] and best[2] > 5 * best[0] or time.perf_counter() > end):
+        if tries >= 5 and ((best[1] > 2 * best[0] and best[2] > 5 * best[0]) or time.perf_counter() > end):
             break
         best = np.minimum(best, [timed(call) for call in calls])
     mine, loop, whole = SECONDS * RATE / best / 1e6
