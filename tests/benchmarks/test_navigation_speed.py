@@ -49,7 +49,7 @@ def timed(call):
     ("name", "options", "n", "floor"),
     [
         ("navigation-frame", {"samples": 2}, 240_000, 8e6),
-        ("navigation-frame", {"samples": 2, "azimuth": "wander"}, 240_000, 7.5e6),
+        ("navigation-frame", {"samples": 2, "azimuth": "wander"}, 240_000, 6e6),
         ("navigation-frame", {"samples": 4}, 240_000, 11e6),
         ("navigation-frame", {"samples": 8}, 240_000, 12e6),
         ("inertial-frame", {"samples": 2}, 240_000, 6e6),
