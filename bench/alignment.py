@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike
 
 from bench import _alignment_vectors as vectors
 from bench.earth import WGS84, Earth
-from bench.errors import Array, InputError, ObservabilityError, require_array, require_scalar
+from bench.errors import Array, InputError, ObservabilityError, require_array, require_instance, require_scalar
 from bench.rotation import matrix_from_quat, quat_conjugate, quat_multiply, quat_normalize, quat_rotate
 from bench.trajectory import NavigationInitial
 from bench.units import DEG, DEG_PER_H
@@ -209,8 +209,7 @@ def _increments(dtheta_b: ArrayLike, dvel_b: ArrayLike, dt: float) -> tuple[Arra
 
 
 def _place(latitude: float, longitude: float, height: float, earth: Earth) -> NavigationInitial:
-    if not isinstance(earth, Earth):
-        raise InputError(f"earth must be an Earth, got {earth!r}")
+    require_instance("earth", earth, Earth)
     return NavigationInitial(latitude=latitude, longitude=longitude, height=height)
 
 

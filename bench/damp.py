@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bench.aiding import VelocityAiding
-from bench.errors import Array, InputError, require_scalar
+from bench.errors import Array, InputError, require_instance, require_scalar
 from bench.interpolation import SAME_TIME, Comparison, sampled
 from bench.rotation import quat_conjugate, quat_from_rotvec, quat_multiply, quat_normalize, rotvec_from_quat
 from bench.solve import Solution
@@ -98,8 +98,7 @@ def damp(solution: Solution, aiding: VelocityAiding, damping: DampingFilter, *, 
         ("aiding", aiding, VelocityAiding),
         ("damping", damping, DampingFilter),
     ):
-        if not isinstance(value, cls):
-            raise InputError(f"{name} must be a {cls.__name__}, got {value!r}")
+        require_instance(name, value, cls)
     require_held_height(solution.solver)
     free = solution.trajectory
     step = require_scalar("step", step, positive=True)

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bench.errors import Array, InputError, require_array, require_integer, require_scalar
+from bench.errors import Array, require_array, require_instance, require_integer, require_scalar
 from bench.imu._options import fork
 from bench.rotation import quat_from_rotvec, quat_multiply, quat_normalize
 from bench.solvers.damping import DampingModel, InsSamples
@@ -60,8 +60,7 @@ class ErrorSimulation:
     seed: int = 0
 
     def __post_init__(self) -> None:
-        if not isinstance(self.model, DampingModel):
-            raise InputError(f"model must be a DampingModel, got {self.model!r}")
+        require_instance("model", self.model, DampingModel)
         require_integer("trials", self.trials, minimum=1)
         require_integer("seed", self.seed, minimum=0)
 

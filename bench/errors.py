@@ -137,6 +137,20 @@ def require_flag(name: str, value: Any) -> bool:
     return bool(value)
 
 
+def require_instance(name: str, value: object, cls: type | tuple[type, ...]) -> None:
+    """Check that `value` is of a class, or of one of several.
+
+    Raises
+    ------
+    InputError
+        Otherwise.
+    """
+    if not isinstance(value, cls):
+        names = [each.__name__ for each in (cls if isinstance(cls, tuple) else (cls,))]
+        wanted = " or ".join(f"{'an' if name[0] in 'AEIO' else 'a'} {name}" for name in names)
+        raise InputError(f"{name} must be {wanted}, got {value!r}")
+
+
 def require_times(name: str, value: ArrayLike) -> Array:
     """Return strictly increasing finite times, shape (n,), s.
 

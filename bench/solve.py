@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bench.earth import WGS84, Earth
-from bench.errors import Array, InputError, UnknownNameError, require_array
+from bench.errors import Array, InputError, UnknownNameError, require_array, require_instance
 from bench.interpolation import Comparison
 from bench.recording import Recording
 from bench.rotation import quat_conjugate, quat_multiply, quat_normalize
@@ -105,8 +105,7 @@ def solve_recording(
         ("initial", initial, NavigationInitial),
         ("earth", earth, Earth),
     ):
-        if not isinstance(value, cls):
-            raise InputError(f"{name} must be {_named(cls)}, got {value!r}")
+        require_instance(name, value, cls)
     made = without_bias(recording.as_increments(rule), gyro_bias, accelerometer_bias)
     used = len(made) // solver.samples * solver.samples
     if not used:
@@ -174,8 +173,3 @@ def _attitude(
     q_eb = quat_normalize(quat_multiply(quat_conjugate(turned), q_ib))
     r_e = earth.position(initial.latitude, initial.longitude, initial.height)
     return Trajectory(earth, t, q_eb, np.zeros((len(t), 3)), np.tile(r_e, (len(t), 1)))
-
-
-def _named(cls: Any) -> str:
-    names = [c.__name__ for c in (cls if isinstance(cls, tuple) else (cls,))]
-    return " or ".join(f"{'an' if name[0] in 'AEIO' else 'a'} {name}" for name in names)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bench.earth import Earth, require_latitude
-from bench.errors import Array, InputError, require_array, require_scalar, require_unit_quaternion
+from bench.errors import Array, InputError, require_array, require_instance, require_scalar, require_unit_quaternion
 from bench.rotation import cross, quat_conjugate, quat_multiply, quat_normalize, quat_rotate
 from bench.signals import Kinematics
 
@@ -92,8 +92,7 @@ class Trajectory:
     r_e: Array
 
     def __post_init__(self) -> None:
-        if not isinstance(self.earth, Earth):
-            raise InputError(f"earth must be an Earth, got {self.earth!r}")
+        require_instance("earth", self.earth, Earth)
         t = require_array("t", self.t, (None,))
         object.__setattr__(self, "t", t)
         object.__setattr__(self, "q_eb", require_unit_quaternion("q_eb", self.q_eb, (len(t), 4)))

@@ -16,7 +16,15 @@ import numpy as np
 from mujoco import rollout
 
 from bench.earth import WGS84, Earth
-from bench.errors import AccuracyError, Array, InputError, require_array, require_integer, require_scalar
+from bench.errors import (
+    AccuracyError,
+    Array,
+    InputError,
+    require_array,
+    require_instance,
+    require_integer,
+    require_scalar,
+)
 from bench.mjcf import compile_model
 from bench.motion._options import ORIGIN, Vector, as_vector, set_options
 from bench.motion.recorded_turntable import RecordedTurntable
@@ -194,8 +202,7 @@ class Turntable:
         AccuracyError
             If the dynamics are not stable at this step.
         """
-        if not isinstance(profile, Profile):
-            raise InputError(f"profile must be a Profile, got {profile!r}")
+        require_instance("profile", profile, Profile)
         rate = require_scalar("rate", rate, positive=True)
         if step is None:
             every = math.ceil(1.0 / (rate * profile.longest_step) - 1e-9)

@@ -1,23 +1,12 @@
 """The work of `dual-euler-swing` and `dual-euler-turntable`: attitudes by every algorithm, ideal and with the IMU."""
 
-from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 
 from bench.errors import Array
 from bench.experiments._dual_euler_angles import EVERY, Judged
-from bench.experiments._dual_euler_runs import (
-    DUAL,
-    QUATERNION,
-    RATE,
-    Case,
-    Felt,
-    felt,
-    navigate,
-    reported,
-    rows_of,
-)
+from bench.experiments._dual_euler_runs import DUAL, QUATERNION, RATE, Felt, Work, felt, navigate, reported, rows_of
 from bench.rotation import quat_conjugate, quat_from_rotvec, quat_multiply, quat_normalize, quat_rotate
 from bench.solvers.attitude import AttitudeSolver
 from bench.table import Table
@@ -27,17 +16,6 @@ DUAL_ALONE, FORWARD_ALONE = "dual Euler, gyros alone", "forward Euler, gyros alo
 INS = {DUAL_INS: DUAL, QUATERNION_INS: QUATERNION}
 TRIED = (DUAL_INS, QUATERNION_INS, DUAL_ALONE)
 IDEAL = (*((name, 1) for name in (*TRIED, FORWARD_ALONE)), *((DUAL_INS, N) for N in (2, 4)))
-CHUNK = 250  # trials: a driven table costs as much as these
-
-
-@dataclass(frozen=True)
-class Work:
-    """Some trials of one case; the first chunk does the ideal runs too and keeps the angles of trial 0."""
-
-    case: Case
-    seed: int
-    first: int
-    count: int
 
 
 def attitude_solver(name: str, samples: int) -> AttitudeSolver:

@@ -4,29 +4,23 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bench.campaign import Item
 from bench.errors import Array
 from bench.experiments._dual_euler_runs import (
     DUAL,
-    DURATION,
     HELD,
     QUATERNION,
-    RATES,
     Algorithm,
-    DrivenTable,
     Felt,
-    cut,
+    TableOptions,
+    Work,
     felt,
     navigate,
     reported,
-    require_run,
-    require_table,
     rows_of,
 )
 from bench.table import Table
 from bench.trajectory import navigation_errors
 
-CHUNK = 250  # trials: a driven table costs as much as these
 REPORTS = 25  # rows of a trial, evenly over the run
 TIMES = 5  # of tables 2 to 4, evenly over the run
 AXES = ("east_m", "north_m", "total_m")
@@ -48,56 +42,10 @@ IDEAL = (*TRIED, Algorithm("dual quaternion", "dual-quaternion", HELD))
 
 
 @dataclass(frozen=True)
-class Options:
-    """Options of the experiment; the defaults are the conditions at which claims are judged.
-
-    Attributes
-    ----------
-    trials : int
-        Monte Carlo trials over sensor errors, for each rate.
-    duration : float
-        Length of the run, s; position errors are tabled at its fifths.
-    rates : tuple of float
-        Of the middle axis, deg/s.
-    rest : float
-        Time at rest before the axis moves, s.
-    fluctuation : float
-        RMS of what manual operation adds to the rate, deg/s.
-    """
+class Options(TableOptions):
+    """The options of a table test, with more trials."""
 
     trials: int = 200
-    duration: float = DURATION
-    rates: tuple[float, ...] = RATES
-    rest: float = 100.0
-    fluctuation: float = 0.001
-
-    def __post_init__(self) -> None:
-        require_run(self.trials, self.duration)
-        object.__setattr__(self, "rates", tuple(self.rates))
-        require_table(self.rates, self.rest, self.fluctuation)
-
-    def cases(self, seed: int) -> list[DrivenTable]:
-        """Return the tables; the seed decides the fluctuations."""
-        return [DrivenTable(rate, self.rest, self.fluctuation, seed, self.duration) for rate in self.rates]
-
-
-@dataclass(frozen=True)
-class Work:
-    """Some trials on one table; the first chunk does the ideal runs too."""
-
-    case: DrivenTable
-    seed: int
-    first: int
-    count: int
-
-
-def items(options: Options, seed: int) -> list[Item]:
-    """Cut the Monte Carlo into chunks of trials, one table each."""
-    return [
-        Item(f"table-{k}-trial-{first:05d}", Work(case, seed, first, n))
-        for first, n in cut(options.trials, CHUNK)
-        for k, case in enumerate(options.cases(seed))
-    ]
 
 
 def position_errors(fixed: Felt, algorithm: Algorithm, increments: tuple[Array, Array]) -> tuple[Array, Array]:

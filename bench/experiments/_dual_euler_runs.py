@@ -5,6 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from bench.campaign import Item
 from bench.errors import Array, InputError, require_integer, require_scalar
 from bench.experiments._ins_frames_trials import Algorithm
 from bench.imu.grades import grade
@@ -17,6 +18,7 @@ LATITUDE, LONGITUDE = 32.06 * DEG, 118.8 * DEG  # stated
 RATE, DURATION = 100.0, 2500.0  # Hz, s: stated
 AMPLITUDE, PERIOD = 90 * DEG, 256.0  # of the pitch swing: stated
 RATES = (0.015, 0.15)  # deg/s, of the table: as stated, and one that reaches the poles
+CHUNK = 250  # trials: a driven table costs as much as these
 ENOUGH = 100  # trials, from which shares of 5 % can be told
 REPORT = 25.0  # s, between reported errors
 GRADE = "lyu"
@@ -89,6 +91,59 @@ class DrivenTable:
 
 
 Case = Swing | DrivenTable
+
+
+@dataclass(frozen=True)
+class Work:
+    """Some trials of one case; the first chunk does the ideal runs too."""
+
+    case: Case
+    seed: int
+    first: int
+    count: int
+
+
+@dataclass(frozen=True)
+class TableOptions:
+    """Options of the experiment; the defaults are the conditions at which claims are judged.
+
+    Attributes
+    ----------
+    trials : int
+        Monte Carlo trials over sensor errors, for each rate.
+    duration : float
+        Length of the run, s.
+    rates : tuple of float
+        Of the middle axis, deg/s.
+    rest : float
+        Time at rest before the axis moves, s.
+    fluctuation : float
+        RMS of what manual operation adds to the rate, deg/s.
+    """
+
+    trials: int = 100
+    duration: float = DURATION
+    rates: tuple[float, ...] = RATES
+    rest: float = 100.0
+    fluctuation: float = 0.001
+
+    def __post_init__(self) -> None:
+        require_run(self.trials, self.duration)
+        object.__setattr__(self, "rates", tuple(self.rates))
+        require_table(self.rates, self.rest, self.fluctuation)
+
+    def cases(self, seed: int) -> list[DrivenTable]:
+        """Return the tables; the seed decides the fluctuations."""
+        return [DrivenTable(rate, self.rest, self.fluctuation, seed, self.duration) for rate in self.rates]
+
+
+def table_items(options: TableOptions, seed: int) -> list[Item]:
+    """Cut the Monte Carlo into chunks of trials, one table each."""
+    return [
+        Item(f"table-{k}-trial-{first:05d}", Work(case, seed, first, n))
+        for first, n in cut(options.trials, CHUNK)
+        for k, case in enumerate(options.cases(seed))
+    ]
 
 
 @dataclass(frozen=True, eq=False)

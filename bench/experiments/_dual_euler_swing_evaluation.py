@@ -12,7 +12,6 @@ from bench.experiments._dual_euler_angle_trials import (
     DUAL_ALONE,
     DUAL_INS,
     QUATERNION_INS,
-    Work,
 )
 from bench.experiments._dual_euler_angles import LARGEST, NAMES, final
 from bench.experiments._dual_euler_judging import (
@@ -26,7 +25,7 @@ from bench.experiments._dual_euler_judging import (
     judge_turned_over,
     summary_table,
 )
-from bench.experiments._dual_euler_runs import DURATION, PERIOD, Swing, cut, not_the_papers, require_run
+from bench.experiments._dual_euler_runs import DURATION, PERIOD, Swing, Work, cut, not_the_papers, require_run
 from bench.table import Table
 
 BOUNDS = {"heading": 0.5, "pitch": 1.0, "roll": 0.6}  # arcmin, printed

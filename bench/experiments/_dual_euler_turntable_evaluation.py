@@ -1,14 +1,11 @@
-"""The options, items and evaluation of `dual-euler-turntable`: verdicts, tables and figures."""
-
-from dataclasses import dataclass
+"""The evaluation of `dual-euler-turntable`: verdicts, tables and figures."""
 
 import numpy as np
 
-from bench.campaign import Item
 from bench.experiment import Evaluation, Verdict
 from bench.experiments import _dual_euler_figures as figures
 from bench.experiments._attitude_judging import tally, withhold
-from bench.experiments._dual_euler_angle_trials import CHUNK, DUAL_INS, Work
+from bench.experiments._dual_euler_angle_trials import DUAL_INS
 from bench.experiments._dual_euler_angles import final
 from bench.experiments._dual_euler_judging import (
     growth,
@@ -19,15 +16,7 @@ from bench.experiments._dual_euler_judging import (
     spread,
     summary_table,
 )
-from bench.experiments._dual_euler_runs import (
-    DURATION,
-    RATES,
-    DrivenTable,
-    cut,
-    not_the_papers,
-    require_run,
-    require_table,
-)
+from bench.experiments._dual_euler_runs import RATES, TableOptions, not_the_papers
 from bench.table import Table
 from bench.units import ARCMIN, DEG
 
@@ -39,55 +28,12 @@ ACCURACY = 0.0001 * DEG  # of the table's angles, stated
 NEAR = 89.0  # deg
 
 
-@dataclass(frozen=True)
-class Options:
-    """Options of the experiment; the defaults are the conditions at which claims are judged.
-
-    Attributes
-    ----------
-    trials : int
-        Monte Carlo trials over sensor errors, for each rate.
-    duration : float
-        Length of the run, s.
-    rates : tuple of float
-        Of the middle axis, deg/s.
-    rest : float
-        Time at rest before the axis moves, s.
-    fluctuation : float
-        RMS of what manual operation adds to the rate, deg/s.
-    """
-
-    trials: int = 100
-    duration: float = DURATION
-    rates: tuple[float, ...] = RATES
-    rest: float = 100.0
-    fluctuation: float = 0.001
-
-    def __post_init__(self) -> None:
-        require_run(self.trials, self.duration)
-        object.__setattr__(self, "rates", tuple(self.rates))
-        require_table(self.rates, self.rest, self.fluctuation)
-
-    def cases(self, seed: int) -> list[DrivenTable]:
-        """Return the tables; the seed decides the fluctuations."""
-        return [DrivenTable(rate, self.rest, self.fluctuation, seed, self.duration) for rate in self.rates]
-
-
-def items(options: Options, seed: int) -> list[Item]:
-    """Cut the Monte Carlo into chunks of trials, one table each."""
-    return [
-        Item(f"table-{k}-trial-{first:05d}", Work(case, seed, first, n))
-        for first, n in cut(options.trials, CHUNK)
-        for k, case in enumerate(options.cases(seed))
-    ]
-
-
-def evaluate(options: Options, seed: int, rows: Table) -> Evaluation:
+def evaluate(options: TableOptions, seed: int, rows: Table) -> Evaluation:
     """Turn the measures into verdicts, tables and figures."""
     found = judge(rows) if set(options.rates) == set(RATES) else {}
     if not found:  # other tables: nothing of the paper's to judge
         found = {key: Verdict("cannot be judged", "not run", "") for key in claim_keys()}
-    verdicts = withhold(found, not_the_papers(options, Options(), options.trials))
+    verdicts = withhold(found, not_the_papers(options, TableOptions(), options.trials))
     tables = {"errors": summary_table(rows, "Largest errors over a run, in the active set and of forward angles")}
     return Evaluation(verdicts, tables, figures.turntable_figures(rows, BOUND), summary(rows, verdicts))
 

@@ -8,7 +8,8 @@ draws of the sensor errors.
 from bench.experiment import Claim, Condition, Experiment
 from bench.experiments._dual_euler_judging import SHARES
 from bench.experiments._dual_euler_navigation_evaluation import PUBLISHED, VISIBLE, evaluate
-from bench.experiments._dual_euler_navigation_trials import Options, items, measure
+from bench.experiments._dual_euler_navigation_trials import Options, measure
+from bench.experiments._dual_euler_runs import table_items
 from bench.experiments.dual_euler_turntable import CONDITIONS as TABLE
 from bench.references import LYU
 
@@ -93,7 +94,7 @@ EXPERIMENT = Experiment(
     conditions=CONDITIONS,
     claims=CLAIMS,
     options=Options,
-    items=items,
+    items=table_items,
     measure=measure,
     evaluate=evaluate,
 )

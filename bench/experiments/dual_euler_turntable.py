@@ -8,8 +8,8 @@ from bench.experiment import Claim, Condition, Experiment
 from bench.experiments._dual_euler_angle_trials import measure
 from bench.experiments._dual_euler_judging import SHARES, SMOOTH, TURNED_OVER
 from bench.experiments._dual_euler_recording import record
-from bench.experiments._dual_euler_runs import RATES
-from bench.experiments._dual_euler_turntable_evaluation import BOUND, FOLLOWS, SMALL, STABLE, Options, evaluate, items
+from bench.experiments._dual_euler_runs import RATES, TableOptions, table_items
+from bench.experiments._dual_euler_turntable_evaluation import BOUND, FOLLOWS, SMALL, STABLE, evaluate
 from bench.references import LYU
 
 CONDITIONS = (
@@ -110,8 +110,8 @@ EXPERIMENT = Experiment(
     source=LYU.at("section 3.2, figures 15 to 17"),
     conditions=CONDITIONS,
     claims=CLAIMS,
-    options=Options,
-    items=items,
+    options=TableOptions,
+    items=table_items,
     measure=measure,
     evaluate=evaluate,
     record=record,

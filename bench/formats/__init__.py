@@ -17,7 +17,7 @@ from typing import Any, ClassVar, final
 
 from bench._timestamps import check_times, require_tolerances
 from bench.earth import WGS84, Earth
-from bench.errors import Array, InputError, OutputError, require_choice, require_flag, require_scalar
+from bench.errors import Array, InputError, OutputError, require_choice, require_flag, require_instance, require_scalar
 from bench.formats._raw import RawImu, filled, require_plausible, within, without_repeats
 from bench.frames import axes_matrix, from_rfu, to_rfu
 from bench.recording import Recording, require_finite_rows
@@ -166,8 +166,7 @@ class Format(ABC):
         OutputError
             If the file exists and `force` is False, or cannot be written.
         """
-        if not isinstance(recording, Recording):
-            raise InputError(f"recording must be a Recording, got {recording!r}")
+        require_instance("recording", recording, Recording)
         _write(path, force, lambda temporary: self._write_imu(temporary, recording, initial))
 
     @final
@@ -202,8 +201,7 @@ class Format(ABC):
         OutputError
             If the file exists and `force` is False, or cannot be written.
         """
-        if not isinstance(trajectory, Trajectory):
-            raise InputError(f"trajectory must be a Trajectory, got {trajectory!r}")
+        require_instance("trajectory", trajectory, Trajectory)
         _write(path, force, lambda temporary: self._write_reference(temporary, trajectory, epoch_ns))
 
     @final

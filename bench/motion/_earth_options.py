@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from bench.earth import Earth, require_latitude
-from bench.errors import Array, InputError, require_scalar
+from bench.errors import Array, InputError, require_instance, require_scalar
 
 NEAR_POLE = 1e-6  # rad; 6 m, where a longitude no longer describes a path
 
@@ -36,8 +36,7 @@ def check_earth(earth: Any) -> None:
     InputError
         Otherwise.
     """
-    if not isinstance(earth, Earth):
-        raise InputError(f"earth must be an Earth, got {earth!r}")
+    require_instance("earth", earth, Earth)
 
 
 def check_off_poles(name: str, latitude: Array) -> None:

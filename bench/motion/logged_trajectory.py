@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bench.earth import WGS84, Earth
-from bench.errors import Array, InputError, require_array, require_unit_quaternion
+from bench.errors import Array, require_array, require_instance, require_unit_quaternion
 from bench.motion._earth_motion import EarthFixed, EarthMotion
 from bench.motion._earth_options import check_earth
 from bench.motion._options import require_within, set_options
@@ -62,8 +62,7 @@ class LoggedTrajectory(EarthMotion):
     @classmethod
     def of(cls, trajectory: Trajectory) -> "LoggedTrajectory":
         """Return the motion through a trajectory, an estimate or a reference."""
-        if not isinstance(trajectory, Trajectory):
-            raise InputError(f"trajectory must be a Trajectory, got {trajectory!r}")
+        require_instance("trajectory", trajectory, Trajectory)
         return cls(trajectory.t, trajectory.r_e, trajectory.q_eb, trajectory.earth)
 
     @classmethod

@@ -6,14 +6,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import rerun as rr
 import rerun.blueprint as rrb
 
 from bench.errors import InputError, require_scalar
 from bench.record._attitude_scene import Triads
 from bench.record._attitude_traces import ANGLES, AttitudeEstimate, Plot, attitude_plots
-from bench.record.layout import layout, time_series
-from bench.record.stream import entity_part, log_texts, recording, rows_at, send_trace
+from bench.record.layout import figure_tabs, layout, time_series
+from bench.record.stream import entity_part, log_figures, log_texts, recording, rows_at, send_trace
 
 __all__ = ["AttitudeEstimate", "AttitudeRun", "write_attitude_recording"]
 
@@ -92,9 +91,7 @@ def write_attitude_recording(
     triads = Triads.of(run.estimates, run.model, run.exaggeration)
     with recording(path, run.title, run.parameters, _blueprint(run, triads, plots)) as rec:
         log_texts(rec, configuration=run.configuration, results=run.results)
-        for k, figure in enumerate(run.figures.values()):
-            image = rr.EncodedImage(contents=Path(figure).read_bytes(), media_type="image/png")
-            rec.log(f"figures/{k}", image, static=True)
+        log_figures(rec, run.figures.values())
         triads.log(rec, pose_rows)
         # Drawn in alphabetical order: one line below another that coincides with it shows at its edges.
         widths = dict(zip(sorted(names, key=str.casefold), np.linspace(3.0, 1.2, len(names)), strict=True))
@@ -116,7 +113,4 @@ def _blueprint(run: AttitudeRun, triads: Triads, plots: Mapping[str, Plot]) -> r
         rrb.Vertical(*views("rotation", legend="rotation"), name="Errors"),
         rrb.Grid(*views(*by_axis, legend="largest_pitch"), grid_columns=2, name="Errors by axis"),
     ]
-    if run.figures:
-        figures = [rrb.Spatial2DView(origin=f"/figures/{k}", name=title) for k, title in enumerate(run.figures)]
-        tabs.append(rrb.Tabs(*figures, name="Figures"))
-    return layout(tabs)
+    return layout([*tabs, *figure_tabs(run.figures)])

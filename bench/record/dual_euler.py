@@ -11,8 +11,8 @@ from bench.errors import InputError
 from bench.record._dual_euler_traces import DualEulerRun, Timed, dual_euler_plots
 from bench.record.drawing import body_shapes
 from bench.record.instrument import log_shapes
-from bench.record.layout import eye, layout, time_series
-from bench.record.stream import log_texts, recording, send_pose, send_trace
+from bench.record.layout import eye, figure_tabs, layout, time_series
+from bench.record.stream import log_figures, log_texts, recording, send_pose, send_trace
 from bench.record.traces import AXIS_COLOURS
 from bench.rotation import quat_from_rotvec
 
@@ -46,9 +46,7 @@ def write_dual_euler_recording(path: str | Path, run: DualEulerRun) -> Path:
     pages = dual_euler_plots(run)
     with recording(path, run.title, run.parameters, _blueprint(run, pages)) as rec:
         log_texts(rec, configuration=run.configuration, results=run.results)
-        for k, figure in enumerate(run.figures.values()):
-            image = rr.EncodedImage(contents=Path(figure).read_bytes(), media_type="image/png")
-            rec.log(f"figures/{k}", image, static=True)
+        log_figures(rec, run.figures.values())
         _log_table(rec, run, chain)
         for t, trace in (timed for page in pages.values() for timed in page):
             send_trace(rec, t, trace, slice(None))
@@ -111,7 +109,4 @@ def _blueprint(run: DualEulerRun, pages: dict[str, list[Timed]]) -> rrb.Blueprin
         tabs.append(rrb.Vertical(*views, name=page))
     near = [time_series(trace, span=run.passage, legend=k == 0) for k, (_, trace) in enumerate(pages["Both sets"])]
     tabs.append(rrb.Vertical(*near, name="At the pole"))
-    if run.figures:
-        figures = [rrb.Spatial2DView(origin=f"/figures/{k}", name=title) for k, title in enumerate(run.figures)]
-        tabs.append(rrb.Tabs(*figures, name="Figures"))
-    return layout(tabs)
+    return layout([*tabs, *figure_tabs(run.figures)])

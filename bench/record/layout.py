@@ -20,6 +20,12 @@ def layout(tabs: Iterable[Any]) -> rrb.Blueprint:
     )
 
 
+def figure_tabs(titles: Iterable[str]) -> list[rrb.Tabs]:
+    """Return the tab of the figures that ``bench.record.stream.log_figures`` logged; none without figures."""
+    views = [rrb.Spatial2DView(origin=f"/figures/{k}", name=title) for k, title in enumerate(titles)]
+    return [rrb.Tabs(*views, name="Figures")] if views else []
+
+
 def time_series(trace: Trace, *, legend: bool = True, span: tuple[float, float] | None = None) -> rrb.TimeSeriesView:
     """Return the plot of everything at and below the entity of a trace, scaled for its values.
 

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import rerun as rr
 import rerun.blueprint as rrb
 
 from bench.errors import InputError, require_integer
@@ -14,8 +13,8 @@ from bench.record._attitude_scene import Triads
 from bench.record._attitude_traces import AttitudeEstimate
 from bench.record._navigation_scene import Tracks
 from bench.record._navigation_traces import NavigationEstimate, TimedPlot, navigation_plots, thinned
-from bench.record.layout import layout, time_series
-from bench.record.stream import entity_part, log_texts, recording, send_trace
+from bench.record.layout import figure_tabs, layout, time_series
+from bench.record.stream import entity_part, log_figures, log_texts, recording, send_trace
 from bench.record.traces import estimate_colours
 from bench.rotation import quat_from_rotvec, quat_multiply, quat_normalize
 from bench.trajectory import Trajectory
@@ -114,9 +113,7 @@ def write_navigation_recording(
     triads = Triads.of(judged, None, run.exaggeration) if judged else None
     with recording(path, run.title, run.parameters, _blueprint(run, tracks, triads, pages)) as rec:
         log_texts(rec, configuration=run.configuration, results=run.results)
-        for k, figure in enumerate(run.figures.values()):
-            image = rr.EncodedImage(contents=Path(figure).read_bytes(), media_type="image/png")
-            rec.log(f"figures/{k}", image, static=True)
+        log_figures(rec, run.figures.values())
         tracks.log_attitudes(rec, pose_rows)
         if not run.attitude_only:
             tracks.log_places(rec, pose_rows)
@@ -166,7 +163,4 @@ def _blueprint(
         tabs.append(rrb.Vertical(*triads.views(), name="Attitude errors"))
     tabs.append(rrb.Grid(*views("Motion"), grid_columns=1 if run.attitude_only else 2, name="Motion"))
     tabs += [rrb.Grid(*views(page), grid_columns=min(3, len(pages[page])), name=page) for page in run.pages]
-    if run.figures:
-        figures = [rrb.Spatial2DView(origin=f"/figures/{k}", name=title) for k, title in enumerate(run.figures)]
-        tabs.append(rrb.Tabs(*figures, name="Figures"))
-    return layout(tabs)
+    return layout([*tabs, *figure_tabs(run.figures)])

@@ -1,8 +1,7 @@
 """Writing a recording: the file, and columns of scalars, poses and tags over time, in chunks."""
 
-import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +11,7 @@ import rerun.blueprint as rrb
 
 from bench.errors import Array, OutputError, require_scalar
 from bench.record.traces import TIMELINE, TRUTH_COLOUR, Colour, Trace
+from bench.table import replacing
 
 CHUNK = 4096  # rows a chunk: several times faster and leaner than one big chunk, and far more than row by row
 
@@ -55,13 +55,10 @@ def recording(
 
 
 def _write(path: Path, content: bytes) -> None:
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
-        temporary.write_bytes(content)
-        os.replace(temporary, path)
+        with replacing(path) as temporary:
+            temporary.write_bytes(content)
     except OSError as error:
-        with suppress(OSError):
-            temporary.unlink()
         raise OutputError(f"recording {str(path)!r} cannot be written: {error.strerror}") from error
 
 
@@ -118,6 +115,13 @@ def send_trace(rec: rr.RecordingStream, t: Array, trace: Trace, rows: slice, wid
     rec.log(trace.entity, style, static=True)
     values = np.ascontiguousarray(trace.values[rows])
     send(rec, trace.entity, t[rows], lambda k: rr.Scalars.columns(scalars=values[k]))
+
+
+def log_figures(rec: rr.RecordingStream, figures: Iterable[Path]) -> None:
+    """Log PNG files; ``bench.record.layout.figure_tabs`` shows them."""
+    for k, figure in enumerate(figures):
+        image = rr.EncodedImage(contents=Path(figure).read_bytes(), media_type="image/png")
+        rec.log(f"figures/{k}", image, static=True)
 
 
 def log_texts(rec: rr.RecordingStream, *, configuration: str, results: str) -> None:

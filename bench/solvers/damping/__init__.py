@@ -16,7 +16,15 @@ from typing import Any, ClassVar, final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bench.errors import AccuracyError, Array, InputError, require_array, require_integer, require_scalar
+from bench.errors import (
+    AccuracyError,
+    Array,
+    InputError,
+    require_array,
+    require_instance,
+    require_integer,
+    require_scalar,
+)
 from bench.references import Source
 from bench.solvers.damping._model import PUBLISHED, DampingModel
 from bench.solvers.damping._samples import STEP_TOLERANCE, InsSamples, error_states
@@ -80,8 +88,7 @@ class DampingFilter(ABC):
     covariance_every: int = 0
 
     def __post_init__(self) -> None:
-        if not isinstance(self.model, DampingModel):
-            raise InputError(f"model must be a DampingModel, got {self.model!r}")
+        require_instance("model", self.model, DampingModel)
         if self.gate is not None and not 0.0 < require_scalar("gate", self.gate) < 1.0:
             raise InputError(f"gate must be a probability between 0 and 1, or None, got {self.gate!r}")
         require_integer("covariance_every", self.covariance_every, minimum=0)
