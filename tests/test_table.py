@@ -65,6 +65,6 @@ def test_a_failed_write_leaves_the_old_file(tmp_path):
 def test_replacing_leaves_nothing_behind_if_the_path_cannot_be_replaced(tmp_path):
     folder = tmp_path / "a-folder"
     (folder / "inside").mkdir(parents=True)
-    with pytest.raises(OSError), replacing(folder) as temporary:
+    with pytest.raises(IsADirectoryError), replacing(folder) as temporary:
         temporary.write_text("whole")
     assert list(tmp_path.iterdir()) == [folder]
