@@ -1,7 +1,9 @@
 """Fast second mode of the damping experiments: errors of an INS simulated by their model instead of running the INS.
 
 A free INS at 100 Hz is the truth of the matter; where thousands of hours are needed, as for consistency over Monte
-Carlo trials, the 13 errors are propagated along the true path once a second, X' = F X + w, for many trials at once::
+Carlo trials, the 13 errors are propagated along the true path once a second, X' = F X + w, for many trials at once. F
+is taken half-way between truth and INS, where all terms of second order vanish: with F of the true path alone, filters
+seem inconsistent after 10 h that are not::
 
     truth = InsSamples.of(motion.trajectory(t))
     simulation = ErrorSimulation(DampingModel(), trials=50, seed=1)
