@@ -15,6 +15,7 @@ ONLY_HERE = {
         "bench/record/_attitude_scene.py",
         "bench/record/_navigation_scene.py",
         "bench/record/attitude.py",
+        "bench/record/damping.py",
         "bench/record/dual_euler.py",
         "bench/record/gyro_free.py",
         "bench/record/instrument.py",

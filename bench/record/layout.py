@@ -26,16 +26,25 @@ def figure_tabs(titles: Iterable[str]) -> list[rrb.Tabs]:
     return [rrb.Tabs(*views, name="Figures")] if views else []
 
 
-def time_series(trace: Trace, *, legend: bool = True, span: tuple[float, float] | None = None) -> rrb.TimeSeriesView:
+def time_series(
+    trace: Trace,
+    *,
+    legend: bool = True,
+    span: tuple[float, float] | None = None,
+    extent: tuple[float, float] | None = None,
+) -> rrb.TimeSeriesView:
     """Return the plot of everything at and below the entity of a trace, scaled for its values.
 
-    It shows the times from `span[0]` to `span[1]`, s; without a span, the minute round the time cursor.
+    It shows the times from `span[0]` to `span[1]`, s; without a span, the minute round the time cursor. It shows the
+    values from `extent[0]` to `extent[1]`; without an extent, all of them.
     """
+    if extent is None and trace.logarithmic:
+        extent = trace.display_range()
     return rrb.TimeSeriesView(
         axis_x=None if span is None else rrb.TimeAxis(view_range=_time_range(*span)),
         origin=f"/{trace.entity}",
         name=trace.title,
-        axis_y=rrb.ScalarAxis(range=trace.display_range()) if trace.logarithmic else None,
+        axis_y=None if extent is None else rrb.ScalarAxis(range=extent),
         plot_legend=rrb.PlotLegend(rrb.Corner2D[trace.empty_corner()], visible=legend),
     )
 

@@ -1,0 +1,105 @@
+"""The plots of a run of damping filters: errors with 3-sigma bands, sensor errors, weights; knows no viewer."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from bench.errors import Array
+from bench.record.traces import AXIS_COLOURS, ESTIMATE_COLOURS, Colour, Trace
+from bench.units import ARCMIN, DEG_PER_H, STANDARD_GRAVITY
+
+Estimates = Mapping[str, tuple[Array, Array]]  # errors and sigma, shape (n, k) each, by name
+NAVIGATION = {  # title and unit, by state
+    2: ("Latitude error, arcmin", ARCMIN),
+    3: ("Longitude error, arcmin", ARCMIN),
+    4: ("phi_E, arcmin", ARCMIN),
+    5: ("phi_N, arcmin", ARCMIN),
+    6: ("phi_U, arcmin", ARCMIN),
+    0: ("Velocity error east, m/s", 1.0),
+    1: ("Velocity error north, m/s", 1.0),
+}
+UNDAMPED = "undamped INS"
+ORDER = (2, 3, 0, 1, 4, 5, 6)  # of the views
+SENSORS = {
+    7: ("Accelerometer error x, micro-g", 1e-6 * STANDARD_GRAVITY),
+    10: ("eps x, deg/h (minus the gyro's error)", DEG_PER_H),
+    8: ("Accelerometer error y, micro-g", 1e-6 * STANDARD_GRAVITY),
+    11: ("eps y, deg/h", DEG_PER_H),
+    9: ("Accelerometer error z, micro-g", 1e-6 * STANDARD_GRAVITY),
+    12: ("eps z, deg/h", DEG_PER_H),
+}
+FAINT = 0.45  # how much of its colour a band keeps
+
+
+@dataclass(frozen=True, eq=False)
+class Plot:
+    """One pair of axes: main lines for the layout, all lines with their widths in pixels, and the range shown."""
+
+    overview: Trace
+    lines: tuple[tuple[Trace, float], ...]
+    extent: tuple[float, float] | None = None
+
+
+def navigation_plots(estimates: Estimates, undamped: Array, colours: Mapping[str, Colour]) -> list[Plot]:
+    """Return latitude, longitude, velocities and angles: what is left, +-3 sigma of every filter, and the free INS."""
+    return [_plot(f"error/{k}", *NAVIGATION[k], k, estimates, colours, undamped[:, k]) for k in ORDER]
+
+
+def sensor_plots(estimates: Estimates, colours: Mapping[str, Colour]) -> list[Plot]:
+    """Return what is left of the sensors' errors, with +-3 sigma."""
+    return [_plot(f"sensor/{k}", *about, k, estimates, colours, None) for k, about in SENSORS.items()]
+
+
+def _plot(
+    entity: str,
+    title: str,
+    scale: float,
+    state: int,
+    estimates: Estimates,
+    colours: Mapping[str, Colour],
+    free: Array | None,
+) -> Plot:
+    lines: list[tuple[Trace, float]] = []
+    shown = []
+    for k, (name, (errors, sigma)) in enumerate(estimates.items()):
+        value, band = errors[:, state] / scale, 3 * sigma[:, state] / scale
+        colour = colours[name]
+        faint: Colour = tuple(round(FAINT * part + (1 - FAINT) * 128) for part in colour)  # type: ignore[assignment]
+        pair = np.stack([band, -band], axis=1)
+        names = f"{name}, +3 sigma", f"{name}, -3 sigma"
+        # A legend stands in the order of the entities: estimates before bands.
+        lines.append((Trace(f"{entity}/sigma_{k}", title, names, (faint, faint), pair), 0.7))
+        lines.append((Trace(f"{entity}/filter_{k}", title, (name,), (colour,), value[:, None]), 2.0))
+        shown.append(value)
+    if free is not None:
+        line = Trace(f"{entity}/free", title, (UNDAMPED,), (colours[UNDAMPED],), (free / scale)[:, None])
+        lines.append((line, 1.0))
+    overview = Trace(
+        entity, title, tuple(estimates), tuple(colours[name] for name in estimates), np.stack(shown, axis=1)
+    )
+    return Plot(overview, tuple(lines), _extent(overview.values))
+
+
+def _extent(values: Array) -> tuple[float, float]:
+    """Return the range of damped errors once they have settled a little; undamped ones would squeeze them."""
+    later = values[len(values) // 24 :]
+    low, high = min(float(later.min()), 0.0), max(float(later.max()), 0.0)
+    margin = 0.15 * (high - low) or 1.0
+    return low - margin, high + margin
+
+
+def weight_plots(weight: Array, gamma: Array) -> list[Plot]:
+    """Return the share of filter 1 in the fused states, and gamma."""
+    groups = {
+        "Share of filter 1: position": {"latitude": 2, "longitude": 3},
+        "Share of filter 1: velocity": {"east": 0, "north": 1},
+        "Share of filter 1: attitude": {"phi_E": 4, "phi_N": 5, "phi_U": 6},
+    }
+    plots = []
+    for k, (title, states) in enumerate(groups.items()):
+        values = weight[:, list(states.values())]
+        trace = Trace(f"fusion/{k}", title, tuple(states), AXIS_COLOURS[: len(states)], values)
+        plots.append(Plot(trace, ((trace, 1.5),)))
+    trace = Trace("fusion/gamma", "gamma: distrust in filter 1", ("gamma",), ESTIMATE_COLOURS[:1], gamma[:, None])
+    return [*plots, Plot(trace, ((trace, 1.5),))]
