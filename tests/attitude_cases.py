@@ -1,13 +1,10 @@
 """Every attitude solver with every combination of its options, found by trying, and increments to feed them."""
 
-import itertools
-from dataclasses import fields
-
 import numpy as np
 
-import bench
 from bench.solvers import solvers
 from bench.solvers.attitude import MAX_SAMPLES
+from tests.solver_cases import option_sets
 
 # Options that cannot be found by trying; a solver without an entry is tested all the same.
 MORE = {
@@ -19,46 +16,14 @@ MORE = {
 }
 
 
-def choices(cls, field):
-    """Return the values an option may have: both of a flag, all of a name; None if it is of another kind."""
-    if isinstance(field.default, bool):
-        return [False, True]
-    if not isinstance(field.default, str):
-        return None
-    try:
-        cls(**{field.name: ""})
-    except bench.UnknownNameError as error:
-        return str(error).partition("valid: ")[2].split(", ")
-    raise AssertionError(f"{cls.__name__} accepts {field.name} = ''")
-
-
 def variants(name, sizes=range(1, MAX_SAMPLES + 1)):
     """Return the solvers of a name: all its numbers of samples among the sizes, times its options."""
-    cls = solvers("attitude")[name]
-    free = {field.name: values for field in fields(cls) if (values := choices(cls, field))}
-    sets = [dict(zip(free, values, strict=True)) for values in itertools.product(*free.values())] + MORE.get(name, [])
-    found = []
-    for N, options in itertools.product(sizes, sets):
-        try:
-            found.append(cls(samples=N, **options))
-        except bench.InputError:
-            continue  # not a number of samples of this solver; what is refused is tested elsewhere
-    return found
+    return option_sets("attitude", name, sizes, MORE.get(name, []))
 
 
 def all_variants(sizes=range(1, MAX_SAMPLES + 1)):
     """Return the variants of all solvers."""
     return [solver for name in sorted(solvers("attitude")) for solver in variants(name, sizes)]
-
-
-def label(solver):
-    """Return a test's name for a solver: its name and the options that differ from the defaults, N always."""
-    options = [
-        f"{field.name}={getattr(solver, field.name)}"
-        for field in fields(solver)
-        if field.name == "samples" or getattr(solver, field.name) != field.default
-    ]
-    return "-".join([solver.name, *options])
 
 
 def window(solver):

@@ -1,16 +1,12 @@
 """Every navigation solver with every combination of its options, found by trying, and increments to feed them."""
 
-import itertools
-from dataclasses import fields
-
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-import bench
 from bench.earth import WGS84
 from bench.solvers import solvers
 from bench.trajectory import NavigationInitial
-from tests.attitude_cases import choices
+from tests.solver_cases import option_sets
 
 # Options that cannot be found by trying; a solver without an entry is tested all the same.
 MORE = {
@@ -23,31 +19,12 @@ CRUDE = {"first-order-quaternion"}  # on purpose: in latitude and longitude, and
 
 def variants(name, sizes=(1, 2, 8)):
     """Return the solvers of a name: all its numbers of samples among the sizes, times its options."""
-    cls = solvers("navigation")[name]
-    free = {field.name: values for field in fields(cls) if (values := choices(cls, field))}
-    sets = [dict(zip(free, values, strict=True)) for values in itertools.product(*free.values())] + MORE.get(name, [])
-    found = []
-    for N, options in itertools.product(sizes, sets):
-        try:
-            found.append(cls(samples=N, **options))
-        except bench.InputError:
-            continue  # not a number of samples of this solver; what is refused is tested elsewhere
-    return found
+    return option_sets("navigation", name, sizes, MORE.get(name, []))
 
 
 def all_variants(sizes=(1, 2, 8)):
     """Return the variants of all solvers."""
     return [solver for name in sorted(solvers("navigation")) for solver in variants(name, sizes)]
-
-
-def label(solver):
-    """Return a test's name for a solver: its name and the options that differ from the defaults, N always."""
-    options = [
-        f"{field.name}={getattr(solver, field.name)}"
-        for field in fields(solver)
-        if field.name == "samples" or getattr(solver, field.name) != field.default
-    ]
-    return "-".join([solver.name, *options])
 
 
 def goes_over_poles(solver):

@@ -3,9 +3,7 @@
 Truth: SciPy's Rotation for a constant rate; else laws that need no truth (equivariance, chunks, unit norm, latency).
 """
 
-import dataclasses
 import math
-import re
 
 import numpy as np
 import pytest
@@ -14,7 +12,8 @@ from scipy.spatial.transform import Rotation
 import bench
 from bench.references import Source
 from bench.solvers import solvers
-from tests.attitude_cases import all_variants, choices, label, swinging, variants, window
+from tests.attitude_cases import all_variants, swinging, variants, window
+from tests.solver_cases import WRONG_SAMPLES, assert_choices_are_listed, assert_samples_are_refused, label
 
 DT = 0.01
 N_ALL = 840  # a multiple of all N, longer than any window
@@ -210,25 +209,15 @@ def test_leftover_increments_are_an_error(solver):
         solver.finish(state)
 
 
-@pytest.mark.parametrize("samples", [0, 9, -1, 2.5, True, None, "3"])
+@pytest.mark.parametrize("samples", WRONG_SAMPLES)
 @pytest.mark.parametrize("name", NAMES)
 def test_a_wrong_number_of_samples_is_named(name, samples):
-    with pytest.raises(bench.InputError, match=f"samples must be .*got {re.escape(repr(samples))}"):
-        bench.solver("attitude", name, samples=samples)
+    assert_samples_are_refused("attitude", name, samples)
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_an_unknown_choice_lists_the_known(name):
-    cls = solvers("attitude")[name]
-    for field in dataclasses.fields(cls):
-        if not isinstance(field.default, str):
-            continue
-        with pytest.raises(bench.UnknownNameError) as raised:
-            cls(**{field.name: "nothing"})
-        assert field.name in str(raised.value)
-        for choice in choices(cls, field):
-            assert choice in str(raised.value)
-            cls(**{field.name: choice})
+    assert_choices_are_listed("attitude", name)
 
 
 @pytest.mark.filterwarnings("ignore::bench.errors.BenchWarning")  # that the series is too short for it

@@ -19,7 +19,8 @@ from bench.evaluation import attitude_error
 from bench.motion.coning import Coning
 from bench.motion.savage_manoeuvre import SavageManoeuvre
 from bench.solvers import solvers
-from tests.attitude_cases import label, variants, window
+from tests.attitude_cases import variants, window
+from tests.solver_cases import label
 
 CYCLES = 6
 UPDATES = np.array([*range(5, 17), 18, 20, 24, 28, 32, 40, 48, 64, 80, 96, 128, 192, 256])  # a second

@@ -5,7 +5,6 @@ no truth (equivariance, chunks, unit norm, ownership of states).
 """
 
 import dataclasses
-import re
 
 import numpy as np
 import pytest
@@ -14,7 +13,6 @@ from scipy.spatial.transform import Rotation
 import bench
 from bench.references import Source
 from bench.solvers import solvers
-from tests.attitude_cases import choices
 from tests.inertial_cases import OverThePole, flown, largest
 from tests.navigation_cases import (
     CRUDE,
@@ -23,10 +21,10 @@ from tests.navigation_cases import (
     goes_over_poles,
     initial,
     is_late,
-    label,
     swaying,
     variants,
 )
+from tests.solver_cases import WRONG_SAMPLES, assert_choices_are_listed, assert_samples_are_refused, label
 
 DT = 0.01
 N_ALL = 240  # a multiple of all N
@@ -256,25 +254,15 @@ def test_leftover_increments_are_an_error(solver):
         solved(solver, swaying(N_ALL + 1))
 
 
-@pytest.mark.parametrize("samples", [0, 9, -1, 2.5, True, None, "3"])
+@pytest.mark.parametrize("samples", WRONG_SAMPLES)
 @pytest.mark.parametrize("name", NAMES)
 def test_a_wrong_number_of_samples_is_named(name, samples):
-    with pytest.raises(bench.InputError, match=f"samples must be .*got {re.escape(repr(samples))}"):
-        bench.solver("navigation", name, samples=samples)
+    assert_samples_are_refused("navigation", name, samples)
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_an_unknown_choice_lists_the_known(name):
-    cls = solvers("navigation")[name]
-    for field in dataclasses.fields(cls):
-        if not isinstance(field.default, str):
-            continue
-        with pytest.raises(bench.UnknownNameError) as raised:
-            cls(**{field.name: "nothing"})
-        assert field.name in str(raised.value)
-        for choice in choices(cls, field):
-            assert choice in str(raised.value)
-            cls(**{field.name: choice})
+    assert_choices_are_listed("navigation", name)
 
 
 @pytest.mark.parametrize("row", [0, 100])

@@ -17,7 +17,8 @@ from bench.motion.fast_vehicle import FastVehicle
 from bench.solvers import solvers
 from bench.trajectory import navigation_errors
 from tests.inertial_cases import sensed
-from tests.navigation_cases import all_variants, label
+from tests.navigation_cases import all_variants
+from tests.solver_cases import label
 
 MOTION = FastVehicle(
     speed=200.0,
