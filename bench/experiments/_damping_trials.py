@@ -22,6 +22,7 @@ VELOCITY = (10.0, 8.0)  # m/s, east and north
 SWAY = (1 * DEG, 2 * DEG, 5 * DEG)  # heading, pitch, roll
 SWAY_RATE = (2 * np.pi / 12, 2 * np.pi / 8, 2 * np.pi / 10)  # rad/s
 WINDOW = 4 * HOUR  # of Xbar
+STEP = 300.0  # s, of which runs last a whole number
 EVERY = 120  # samples of the INS (s) from one kept row to the next
 FREE, FIRST, SECOND, FUSION, AUGMENTED = "free INS", "filter 1", "filter 2", "fusion", "15 states"
 FILTERS = (FIRST, SECOND, FUSION, AUGMENTED)
@@ -40,7 +41,7 @@ class Options:
     Attributes
     ----------
     duration : float
-        Length of the run, h.
+        Length of the run, h; a multiple of 300 s, as `undamped`.
     rate : float
         Rate of the inertial sensors, Hz.
     reference_errors : tuple of float
@@ -86,9 +87,11 @@ class Options:
     def __post_init__(self) -> None:
         for name, least in (("duration", 0.5), ("undamped", 6.0), ("reference_noise", 0.0), ("tau", 200.0)):
             require_scalar(name, getattr(self, name), minimum=least)
-        seconds = self.duration * HOUR
-        if abs(seconds - round(seconds)) > 1e-6 or self.undamped * HOUR % 1:
-            raise InputError(f"duration and undamped must be whole seconds, got {self.duration}, {self.undamped} h")
+            if (
+                name in ("duration", "undamped")
+                and abs((steps := getattr(self, name) * HOUR / STEP) - round(steps)) > 1e-6
+            ):
+                raise InputError(f"{name} must be a multiple of {STEP:g} s, got {getattr(self, name)} h")
         rate = require_scalar("rate", self.rate, minimum=2.0)
         if rate % 2:
             raise InputError(f"rate must be an even number of Hz, got {rate:g}")
@@ -108,7 +111,7 @@ class Options:
         require_choice("mean", self.mean, ("cumulative", "window"))
         require_flag("sway", self.sway)
         require_integer("trials", self.trials, minimum=2)
-        if len(self.signs) != 13 or set(self.signs) - set("+-"):
+        if not isinstance(self.signs, str) or len(self.signs) != 13 or set(self.signs) - set("+-"):
             raise InputError(f"signs must be 13 characters + or -, got {self.signs!r}")
 
     @property

@@ -5,13 +5,12 @@ import numpy as np
 from bench.earth import SPHERE
 from bench.errors import Array
 from bench.experiments._damping_runs import free_ins, make_rows
-from bench.experiments._damping_trials import ERRORS, FREE, HOUR, Options, Work
+from bench.experiments._damping_trials import ERRORS, FREE, HOUR, STEP, Options, Work
 from bench.motion.earth_rest import EarthRest
 from bench.table import Table
 from bench.units import ARCMIN, DEG, DEG_PER_H
 
 RATE = 0.5  # Hz; at rest increments are smooth
-STEP = 300.0  # s
 PERIODS = ("Schuler", "Foucault", "24 h")
 VELOCITY_CASE, GYRO_CASE = "0.5 m/s north at the start", "east gyro drift 0.005 deg/h"
 SPEED, DRIFT = 0.5, 0.005 * DEG_PER_H

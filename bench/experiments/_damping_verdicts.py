@@ -143,6 +143,8 @@ def not_the_conditions(options: Options) -> str:
         return "the reference errors are not the published ones"
     if options.sway:
         return "the ship sways, that of the paper does not"
+    if set(options.latitudes) < set(default.latitudes) or set(options.taus) < set(default.taus):
+        return "fewer latitudes or correlation times are scanned than by default"
     if options.duration < default.duration or options.undamped < default.undamped:
         return f"{options.duration:g} h and {options.undamped:g} h undamped are too short, at least " + (
             f"{default.duration:g} h and {default.undamped:g} h are needed"
@@ -278,15 +280,15 @@ def _exceptions_by(true: NDArray[np.bool_], constants: tuple[float, ...]) -> str
 
 def judge_velocity(results: Results) -> Verdict:
     """Judge: is less than half of the constant error left in the fusion's velocity."""
-    left = np.abs(results.steady(FUSION)) / abs(results.options.focus)
+    left, first = (np.abs(results.steady(name)) / abs(results.options.focus) for name in (FUSION, FIRST))
     true = bool((left[list(SPEED)] < 0.5).all())
-    measured = ", ".join(f"{COLUMNS[k]} {100 * left[k]:.2g} %" for k in SPEED)
+    measured, full = (", ".join(f"{COLUMNS[k]} {100 * part[k]:.3g} %" for k in SPEED) for part in (left, first))
     printed = ", ".join(
         f"{100 * share:.0f} %"
         for k in _printed_rows((results.options.focus,))
         for share in FUSION_TABLE[k, list(SPEED)] / REFERENCE_ERRORS[k]
     )
-    return _verdict(true, f"left: {measured}", f"filter 1 leaves all of it; by the printed table {printed} are left")
+    return _verdict(true, f"left: {measured}", f"filter 1: {full}; fusion by the printed table: {printed}")
 
 
 def judge_trend(results: Results) -> Verdict:

@@ -1,0 +1,400 @@
+"""The experiment of the damped ship's INS: its runs against closed forms, its scan against direct runs, its verdicts.
+
+Truth: closed forms written here, scipy's rotations and chi-square, made-up errors, and the printed tables.
+"""
+
+from dataclasses import replace
+from itertools import product
+from math import cos, log, pi, radians, sin, sqrt
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+from scipy.stats import chi2
+
+from bench.error_simulation import ErrorSimulation, disturbed
+from bench.errors import InputError
+from bench.experiments import _damping_published as published
+from bench.experiments import _damping_scan as scan
+from bench.experiments import _damping_undamped as undamped
+from bench.experiments import _damping_verdicts as verdicts
+from bench.experiments._damping_consistency import CASES, CONSTANT_ERROR, measure_consistency
+from bench.experiments._damping_runs import CONSTANT, free_ins, make_rows, measure_fast, measure_ins, simulated_ins
+from bench.experiments._damping_trials import AUGMENTED, FILTERS, FIRST, FREE, FUSION, SECOND, Options, Work, ship
+from bench.experiments.damping_external_velocity import CLAIMS
+from bench.solvers.damping import DampingModel, InsSamples, error_states
+from bench.solvers.damping.double_filter import DoubleFilter
+from bench.table import Table
+
+ARCMIN, ARCSEC, DRIFT = pi / 10800, pi / 648000, radians(0.005) / 3600
+# Section 3 of the paper: dv, dL and dlambda, phi, nabla, eps.
+STATED = np.array([0.1, 0.1, *[2 * ARCSEC] * 2, *[0.7 * ARCMIN] * 2, 7.7 * ARCMIN, *[5e-5 * 9.80665] * 3, *[DRIFT] * 3])
+COLUMN_STATES = ("dL", "dlambda", "phi_E", "phi_N", "phi_U", "dv_E", "dv_N")
+COLUMN_ROWS, COLUMN_UNITS = [2, 3, 4, 5, 6, 0, 1], np.array([ARCMIN] * 5 + [1.0] * 2)
+# By hand: R = 6371 km, GM and rate of WGS 84, and what the turn of the Earth takes from gravity at 48 degrees.
+RADIUS, EARTH_RATE = 6371e3, 7.292115e-5
+GRAVITY = 3.986004418e14 / RADIUS**2 - EARTH_RATE**2 * RADIUS * cos(radians(48.0)) ** 2
+SCHULER_RATE, EARTH_TURN = sqrt(GRAVITY / RADIUS), 2 * pi / EARTH_RATE
+THERE = Options(latitude=48.0, trials=10)
+THEORY = {"Schuler": 2 * pi / SCHULER_RATE, "Foucault": EARTH_TURN / sin(radians(48.0)), "24 h": EARTH_TURN}
+
+
+def rotation(q):
+    return Rotation.from_quat(q, scalar_first=True)
+
+
+class TestPeriods:
+    def test_theory(self):
+        assert undamped.theory(THERE) == pytest.approx(THEORY, rel=1e-9)
+        assert THEORY["Schuler"] / 60 == pytest.approx(84.4, abs=0.05)  # as in every textbook
+        assert undamped.theory(Options(latitude=-30.0))["Foucault"] == pytest.approx(2 * THEORY["24 h"], rel=1e-12)
+
+    @pytest.mark.parametrize("factors", [(1.0, 1.0, 1.0), (1.2, 0.85, 1.1), (0.8, 1.2, 0.85)])
+    def test_they_are_those_of_the_signals_and_not_of_theory(self, factors):
+        """Noise of 1 % of the amplitude: a wave's rate is known to sqrt(24/n) 0.01/T, a period to 1e-4 at worst."""
+        t = np.arange(0.0, 96 * 3600 + 1, 300.0)
+        true = {name: factor * THEORY[name] for name, factor in zip(THEORY, factors, strict=True)}
+        schuler, foucault, earth = (2 * pi / period * t for period in true.values())
+        rng = np.random.default_rng(4)
+        velocity, gyro = 1e-9 * rng.standard_normal((2, len(t), 13))
+        swing = np.cos(schuler + 0.3)[:, None] * np.stack([np.sin(foucault), np.cos(foucault)], axis=1)
+        velocity[:, :2] = 0.5 * swing + 0.005 * rng.standard_normal((len(t), 2))
+        slow = 3.0 * (1 - np.cos(earth)) + 0.8 * np.cos(schuler) * np.cos(foucault)
+        gyro[:, 2] = ARCMIN * (slow + 0.03 * rng.standard_normal(len(t)))
+        assert undamped.find_periods(t, velocity, t, gyro, THEORY) == pytest.approx(true, rel=5e-4)
+
+
+class TestScan:
+    @pytest.mark.parametrize(
+        ("size", "setting"),
+        [(1.0, (48, 1e3, "acceleration", "markov")), (0.01, (44, 3600, "velocity", "markov")),
+         (0.01, (52, 3600, "acceleration", "printed"))],
+    )  # fmt: skip
+    def test_sums_of_responses_are_what_a_run_gives(self, monkeypatch, size, setting):
+        """They differ by products of errors, 0.04 arcmin of 14: a hundredth of all errors leaves 1e-4 of it."""
+        setting, signs = scan.Setting(*setting), np.random.default_rng(7).choice([-1.0, 1.0], 10)
+        smaller = {name: value * (1 if "tau" in name else size) for name, value in vars(CONSTANT).items()}
+        told = {"CONSTANT": replace(CONSTANT, **smaller), "NOISES": (0.05 * size,), "ATTITUDES": {"-phi, deg": -1 / 60}}
+        told |= {"REFERENCE_ERRORS": tuple(size * C for C in published.REFERENCE_ERRORS)}
+        for name, value in {**told, "sign_table": lambda: signs[None]}.items():
+            monkeypatch.setattr(scan, name, value)
+        t, options = np.arange(0.0, 8 * 3600 + 1, 5.0), Options(duration=8.0)  # read once, at the end
+        truth = InsSamples.of(ship(options, setting.latitude).trajectory(t))
+        responses = scan.respond(options, truth, setting, seed=5)
+        errors, simulation = STATED.copy(), ErrorSimulation(CONSTANT)
+        errors[[0, 1, 2, 4, 6, 7, 8, 10, 11, 12]] *= signs
+        ins = disturbed(truth, simulation.advance(simulation.start(size * errors), truth)[1][:, 0])
+        true = error_states(ins, truth.trajectory())[-1]
+        noise = 0.05 * np.random.default_rng(5).standard_normal((len(t), 2)) / sqrt(5)  # mean of five
+        model = replace(DampingModel.published(setting.tau, setting.q), reference_noise=0.05 / sqrt(5))
+        tolerance = size**2 * np.array([0.02, 0.1, 0.005, 0.003, 0.06, 0.002, 0.002])
+        as_shown = np.array([1, 1, *[-1 / 60] * 3, 1, 1])
+
+        def left(solution):
+            return (true - solution.x[-1, :7])[COLUMN_ROWS] / COLUMN_UNITS
+
+        for name, seconds in (("cumulative", 0.0), ("1 h", 3600.0), ("4 h", 14400.0)):
+            about = {"mean": "window", "window": seconds} if seconds else {}
+            double = DoubleFilter(model=model, r2_reading=setting.r2, **about)
+            found = scan.best_readings(replace(responses, means={name: responses.means[name]}), setting)
+            text = "".join("+" if error > 0 else "-" for error in errors)
+            assert {(best.signs, best.factor) for best in found.values()} == {(text, -1 / 60)}
+            for row, C in ((0, -0.1), (4, -0.5)):
+                fused = double.solve(ins, truth.v_n[:, :2] + size * (C + noise))
+                second = np.tensordot([1.0, *signs, size * C, size * 0.05], responses.two, 1)[0]
+                assert (np.abs(second - left(fused.parts[1])) < tolerance).all()
+                direct = np.stack([left(fused), left(fused.parts[0])])
+                apart = np.array([best.tables[:, row] / as_shown - direct for best in found.values()])
+                assert (np.abs(apart) < tolerance).all()
+        apart = np.abs(found["both tables"].tables - published.BOTH) / published.LARGEST[:, None]
+        assert found["both tables"].misfit == pytest.approx(sqrt((apart**2).mean()), rel=1e-12)
+        for k, (group, columns) in product((0, 1), published.FAMILIES.items()):
+            assert found[f"table {k + 1}, {group}"].misfit == pytest.approx(apart[k][:, columns].max(), rel=1e-12)
+
+    def test_all_combinations_and_settings_are_there(self):
+        assert len({tuple(signs) for signs in scan.sign_table()}) == 2**10
+        assert len(set(scan.settings(Options(taus=(1000.0, 3600.0)), 48.0))) == 2 * 2 + 1
+        np.testing.assert_array_equal(scan.reading_times(Options(duration=24.0)) / 3600, np.arange(8, 24.1, 0.5))
+
+
+T, ONES = np.arange(241) / 10, np.ones((241, 7))  # h
+TAU = 12 / log(10)  # h; from 10 to 1 in 12 h
+CRITERIA = ("both tables", *(f"table {k}, {group}" for k in (1, 2) for group in ("position", "attitude", "velocity")))
+
+
+def fading(tau):
+    return 10 * np.exp(-T[:, None] / tau) * ONES
+
+
+def rows_of(errors, **about):
+    """Return rows with errors (n, 7) in the tables' columns, arcmin and m/s."""
+    states = {f"e_{name}": errors[:, k] * COLUMN_UNITS[k] for k, name in enumerate(COLUMN_STATES)}
+    return make_rows(len(errors), **about, **states)
+
+
+# What the paper says, made up: filter 1 drifts, filter 2 does not but takes 12 h, the fusion takes 6 h.
+AS_CLAIMED = {
+    FREE: lambda C: 10 * ONES,
+    FIRST: lambda C: 0.01 + C * T[:, None] * ONES,
+    SECOND: lambda C: fading(TAU),
+    FUSION: lambda C: fading(TAU / 2) + 0.05 * C,
+    AUGMENTED: lambda C: 0.01 * C * ONES,
+    (CONSTANT_ERROR, FIRST, "nees"): 13.0 + np.arange(13),
+    (CONSTANT_ERROR, AUGMENTED): 0.9,
+    "printed": published.BOTH,
+}
+
+
+def made_up(changes):
+    """Return made-up results in which every claim holds, but for the changes."""
+    told = {**AS_CLAIMED, **changes}
+    tables = [rows_of(told[FREE](0.0), part="ins", name=FREE, t_h=T)]
+    for name in FILTERS:
+        for C in (0.0, *published.REFERENCE_ERRORS):
+            tables.append(rows_of(told[name](C), part="ins", name=name, t_h=T, reference_m_per_s=C))
+        normal = {"nees": 15.0 if name == AUGMENTED else 13.0, "nis": 2.0}
+        for case, trial in product(CASES, range(10)):
+            shown = {key: told.get((case, name, key), value) * np.ones(13) for key, value in normal.items()}
+            shown = {key: value * (1.2 - 0.4 * (trial % 2)) for key, value in shown.items()}  # their means as told
+            about = {"part": "consistency", "case": case, "name": name, "t_h": np.arange(13.0)}
+            left = told.get((case, name), 1.0) * ONES[:13] * np.arange(13)[:, None] * (-1) ** trial
+            tables.append(rows_of(left, **about, **shown, value=trial))
+    for name, period in THEORY.items():
+        tables.append(make_rows(1, part="undamped", case="period", name=name, value=period * told.get(name, 1.0)))
+    for criterion, (k, name) in product(CRITERIA, enumerate((FUSION, FIRST))):
+        about = {"part": "scan", "case": criterion, "name": name}
+        tables.append(rows_of(0 * published.BOTH[k], **about, label="poor", value=0.9, t_h=9.0))
+        tables.append(rows_of(told["printed"][k], **about, label="good", value=told.get(criterion, 0.05), t_h=9.0))
+    return verdicts.Results(THERE, Table.concatenate(tables))
+
+
+def in_columns(columns, values):
+    """Return values (n, 7), or zero in the other columns."""
+    return values * np.isin(np.arange(7), columns)
+
+
+class TestResults:
+    def test_an_exponential_settles_when_it_enters_the_band(self):
+        """|e| falls from 10 to a band b in tau ln(10/b); a step is 0.1 h; what is left at the end counts for 0.03 h."""
+        tau = np.array([0.5, 1.0, 1.5, 2.0, 2.5, 0.75, 0.1])
+        results = made_up({FUSION: lambda C: -0.7 + fading(tau)})
+        for band in (0.1, 0.01):
+            np.testing.assert_allclose(results.settled(FUSION, band), tau * log(1 / band), rtol=0, atol=0.13)
+        np.testing.assert_array_equal(results.settled(AUGMENTED, 0.01, -0.5), 0.0)  # a constant
+
+    def test_what_moves_at_the_end_never_settles(self):
+        moves = [8 * np.cos(2 * pi * T), T, *[1.0 * (T < 12)] * 5]
+        found = made_up({FUSION: lambda C: np.stack(moves, axis=1)}).settled(FUSION, 0.05)
+        np.testing.assert_allclose(found, [np.inf, np.inf, *[11.9] * 5])
+
+    def test_the_steady_state_is_that_of_the_last_hour_and_a_half(self):
+        errors = np.where(T[:, None] < 22.45, 1e3, 2.0 + 0.5 * (-1.0) ** np.arange(241)[:, None]) * np.arange(7)
+        results = made_up({SECOND: lambda C: C * errors})
+        # 16 rows, half of them 2.5, half 1.5; -0.3 m/s if nothing is said.
+        np.testing.assert_allclose(results.steady(SECOND), -0.6 * np.arange(7), rtol=1e-12)
+        np.testing.assert_allclose(results.steady(SECOND, -0.1), -0.2 * np.arange(7), rtol=1e-12)
+        np.testing.assert_allclose(results.steady_rms(SECOND), 0.3 * sqrt(4.25) * np.arange(7), rtol=1e-12)
+
+
+def also(name, more):
+    """Return the made-up errors of a filter with more added."""
+    return {name: lambda C: AS_CLAIMED[name](C) + more(C)}
+
+
+NOT_ALL_HOLDS = [
+    ({FIRST: lambda C: 0.01 + C * (20 + T[:, None] / 12) * ONES}, {"1 filter 1 diverges"}),
+    (also(FIRST, lambda C: in_columns([6], 0.4 * C * (C + 0.3) * T[:, None])), {"1 in proportion"}),
+    (also(SECOND, lambda C: in_columns([3], 2.5 * C)), {"2 filter 2 does not see it"}),
+    ({SECOND: lambda C: fading(0.7 * TAU)}, {"2 settles after 12 h"}),
+    (also(FUSION, lambda C: in_columns([2], fading(1.2 * TAU))), {"3 faster than filter 2"}),
+    (also(FUSION, lambda C: in_columns([4], 8.0 * (C == -0.3))), {"3 more accurate than filter 1", "4 for every C"}),
+    (also(FUSION, lambda C: in_columns([1], 8.0 * (C == -0.2))), {"4 for every C"}),
+    (also(FUSION, lambda C: in_columns([5], 0.5 * C)), {"3 velocity compensated"}),
+    (also(FUSION, lambda C: in_columns([2], 8.0 * C)), {"4 no trend with C"}),
+    (also(AUGMENTED, lambda C: in_columns([6], 0.05 * C)), {"5 fifteen states"}),
+    ({(CONSTANT_ERROR, AUGMENTED): np.where(np.arange(7) == 5, 1.1, 0.9)}, {"5 fifteen states, over trials"}),
+    ({(CONSTANT_ERROR, AUGMENTED): np.where(np.arange(7) == 4, 1.1, 0.9)}, set()),  # position and velocity only
+    ({(CONSTANT_ERROR, FIRST, "nees"): 13.0}, {"6 credibility of filter 1"}),
+    ({(CONSTANT_ERROR, FIRST, "nees"): 60.0 - np.arange(13)}, {"6 credibility of filter 1"}),
+    ({("none", FUSION, "nees"): 18.0}, {"7 consistent, fusion"}),
+    ({("none", SECOND, "nis"): 0.13}, {"7 consistent, filter 2"}),
+    ({("none", FIRST, "nees"): np.where(np.arange(13) > 9, 20.0, 13.0)}, {"7 consistent, filter 1"}),
+    ({("none", FIRST, "nees"): np.where(np.arange(13) > 10, 20.0, 13.0)}, set()),  # 10 of 12 hours are within
+    ({("none", AUGMENTED, "nees"): 99.0, (CONSTANT_ERROR, AUGMENTED, "nis"): 99.0}, set()),  # judged by drawn errors
+    ({("drawn", AUGMENTED, "nees"): 20.0}, {"7 consistent, 15 states"}),
+    ({"Schuler": 1.009, "Foucault": 0.989, "24 h": 1.011}, {"8 period, Foucault", "8 period, 24 h"}),
+    ({"table 1, position": 0.101, "table 2, velocity": 0.099, "both tables": 0.2}, {"table 1, position"}),
+    ({"printed": published.BOTH + in_columns([4], 0.11 * 0.081) * np.eye(5)[2][:, None]}, {"both tables"}),
+]
+
+
+class TestVerdicts:
+    @pytest.mark.parametrize(("changes", "expected"), [({}, set()), *NOT_ALL_HOLDS])
+    def test_each_change_undoes_what_it_contradicts(self, changes, expected):
+        found = verdicts.judge_all(made_up(changes))
+        assert set(found) == {claim.key for claim in CLAIMS}
+        assert {key for key, verdict in found.items() if verdict.judgement != "holds"} == expected
+        assert {verdict.judgement for verdict in found.values()} <= {"holds", "does not hold"}
+        assert found["both tables"].reason == "best reading: good"
+
+    @pytest.mark.parametrize(
+        ("name", "value", "why"),
+        [
+            ("reference_errors", (-0.1, -0.2, -0.3), "the reference errors are not the published ones"),
+            ("sway", True, "the ship sways"), ("duration", 23.0, "23 h and 96 h undamped are too short"),
+            ("taus", (1000.0, 3600.0), "fewer latitudes or correlation times"),
+            ("undamped", 95.0, "24 h and 95 h undamped are too short"), ("trials", 9, "9 trials are too few"),
+        ],
+    )  # fmt: skip
+    def test_other_conditions_judge_nothing(self, name, value, why):
+        assert verdicts.not_the_conditions(Options(**{name: value})).startswith(why)
+        assert verdicts.not_the_conditions(Options(trials=10, undamped=100.0)) == ""
+
+
+class TestRuns:
+    """The ship rests for 1000 s, level, bow north: x is east and y north."""
+
+    def run(self, errors, duration=600.0, rate=2.0):
+        return list(free_ins(ship(THERE), rate, duration, np.asarray(errors), seed=0))
+
+    def test_a_run_starts_with_the_stated_errors(self):
+        errors = STATED * np.where(np.arange(13) % 3, 1.0, -1.0)
+        for found in (self.run(errors, 10.0)[0], next(simulated_ins(ship(THERE), 10.0, errors))):
+            np.testing.assert_allclose(found.errors[:, 7:], np.tile(errors[7:], (11, 1)), rtol=1e-10)
+            np.testing.assert_allclose(found.errors[0], errors, rtol=0, atol=1e-14)
+            ins, true = found.ins, found.truth
+            np.testing.assert_allclose((ins.v_n - true.v_n)[0], [*errors[:2], 0.0], rtol=0, atol=1e-14)
+            place = [ins.latitude[0] - true.latitude[0], ins.longitude[0] - true.longitude[0]]
+            np.testing.assert_allclose(place, errors[2:4], rtol=0, atol=1e-15)
+            turn = rotation(ins.q_nb[0]) * rotation(true.q_nb[0]).inv()  # C_c = (I - [phi x]) C_nb
+            np.testing.assert_allclose(turn.as_rotvec(), -errors[4:7], rtol=0, atol=1e-15)
+
+    @pytest.mark.parametrize("state", [7, 8, 10, 11, 12])
+    def test_constant_sensor_errors_act_with_the_signs_of_the_paper(self, state):
+        """Schuler's closed forms; the Earth's turn, 0.04 rad in ten minutes, takes away its square's half."""
+        errors = STATED * (np.arange(13) == state)
+        found, k = self.run(errors)[0], (state - 7) % 3
+        turn = (rotation(found.ins.q_nb) * rotation(found.truth.q_nb).inv()).as_rotvec()
+        # nabla is the accelerometer's error; eps is minus the gyro's, which turns the computed axes with it.
+        shown = (found.ins.v_n - found.truth.v_n)[:, k] if state < 10 else -turn[:, k]
+        swing = np.sin(SCHULER_RATE * found.ins.t) / SCHULER_RATE
+        expected = errors[state] * (found.ins.t if state == 12 else swing)
+        np.testing.assert_allclose(shown, expected, rtol=0, atol=2e-3 * abs(expected[-1]))
+
+    def test_hours_join(self):
+        parts, t = self.run(STATED, 2.5 * 3600), np.arange(2.5 * 3600 + 1)
+        ins = InsSamples.joined(*(part.ins for part in parts))
+        np.testing.assert_allclose(ins.t, t, rtol=0, atol=1e-9)
+        np.testing.assert_array_equal(np.concatenate([part.truth.t for part in parts]), ins.t)
+        np.testing.assert_allclose(ins.f_n, InsSamples.of(ins.trajectory()).f_n, rtol=0, atol=1e-9)
+        fast = list(simulated_ins(ship(THERE), 2.0 * 3600, STATED))
+        np.testing.assert_array_equal(np.concatenate([part.ins.t for part in fast]), t[: 2 * 3600 + 1])
+        coarse = list(free_ins(ship(THERE), 0.5, 2 * 3600.0, STATED, 0, 300.0))
+        np.testing.assert_allclose(np.concatenate([part.ins.t for part in coarse]), np.arange(25) * 300.0, atol=1e-9)
+
+    def test_the_ship(self):
+        path = ship(THERE).trajectory(np.array([0.0, 500.0, 1000.0, 1050.0, 1100.0, 40000.0, 86400.0]))
+        np.testing.assert_allclose(path.v_n[:3], 0.0, rtol=0, atol=1e-12)
+        np.testing.assert_allclose(path.v_n[4:], np.tile([10.0, 8.0, 0.0], (3, 1)), rtol=0, atol=1e-9)
+        assert 0 < path.v_n[3, 1] < 8
+        np.testing.assert_allclose(np.abs(path.q_nb), np.tile([1.0, 0, 0, 0], (7, 1)), rtol=0, atol=1e-12)
+        north = 8 * (86400 - 1100) + 0.5 * 8 * 100  # m; on a sphere latitude is the way north over R
+        assert path.latitude[-1] - path.latitude[0] == pytest.approx(north / RADIUS, rel=1e-6)
+        assert ship(THERE, -12.0).latitude == pytest.approx(radians(-12.0))
+
+    def test_the_ship_in_waves(self):
+        t = np.arange(0.0, 120.0, 0.05)
+        motion = ship(Options(sway=True))
+        for k, (size, period) in enumerate(((1.0, 12.0), (2.0, 8.0), (5.0, 10.0))):  # heading, pitch, roll
+            times = (t, t + period / 2, t + period)
+            now, half, later = (rotation(motion.trajectory(at).q_nb).as_euler("ZXY")[:, k] for at in times)
+            assert np.abs(now).max() == pytest.approx(radians(size), rel=1e-3)  # 0.05 s is 0.4 % of a turn
+            np.testing.assert_allclose(now, later, rtol=0, atol=1e-9)
+            np.testing.assert_allclose(now, -half, rtol=0, atol=1e-9)
+        np.testing.assert_allclose(motion.trajectory(np.array([2000.0])).v_n[0], [10, 8, 0], rtol=0, atol=1e-9)
+
+
+HALF_AN_HOUR = Options(duration=0.5, rate=10.0, reference_errors=(-0.3,))
+
+
+@pytest.fixture(scope="module")
+def both_ways():
+    tables = [measure_ins(Work(HALF_AN_HOUR, 1, "ins")), measure_fast(Work(HALF_AN_HOUR, 1, "fast"))]
+    results = verdicts.Results(HALF_AN_HOUR, Table.concatenate(tables))
+    # They differ by products of three errors; two of them at most 7.7 arcmin, the heading's. And twice that.
+    return results, 2 * (7.7 * ARCMIN) ** 2 * np.abs(results.run(FREE)[1]).max(axis=0)
+
+
+class TestTwoWays:
+    """The INS on the rig, and errors by their model: half an hour with the acceleration, at 10 Hz."""
+
+    @pytest.mark.parametrize("name", [FREE, *FILTERS])
+    def test_they_agree(self, both_ways, name):
+        results, tolerance = both_ways
+        (t, found), (t_fast, fast) = results.run(name), results.run(name, part="fast")
+        np.testing.assert_allclose([t, t_fast], [np.arange(16) / 30] * 2, rtol=0, atol=1e-12)
+        assert (np.abs(found - fast).max(axis=0) < tolerance).all()
+
+    @pytest.mark.parametrize("state", [0, 1, 2, 3, 4, 5, 6, 7, 8, 10, 11, 12])  # nabla_z has nothing to act on
+    def test_they_do_not_if_a_sign_is_wrong(self, both_ways, state):
+        results, tolerance = both_ways
+        wrong = HALF_AN_HOUR.initial * np.where(np.arange(13) == state, -1, 1)
+        (chunk,) = simulated_ins(ship(HALF_AN_HOUR), 1800.0, wrong)
+        apart = (chunk.errors[::120, COLUMN_ROWS] / COLUMN_UNITS) - results.run(FREE)[1]
+        assert (np.abs(apart).max(axis=0) > 3 * tolerance).any()
+
+
+class TestConsistency:
+    def test_a_trial_does_not_depend_on_the_others(self):
+        def trials(count, index):
+            return measure_consistency(Work(Options(duration=0.5, trials=count), 3, "consistency", index))
+
+        few, many, rest = trials(2, 0), trials(7, 0), trials(7, 5)
+        assert (set(many["value"]), set(rest["value"])) == (set(range(5)), {5, 6})
+        for name, trial in product(few.columns, (0, 1)):
+            np.testing.assert_array_equal(few.where(value=trial)[name], many.where(value=trial)[name])
+        assert not np.isin(rest["e_dv_E"], many["e_dv_E"]).any()
+
+    def test_filter_1_is_consistent_without_a_constant_error_and_lost_with_one(self):
+        """99.9 % bounds by scipy: a covariance 30 % too large or small is outside them."""
+        options = Options(duration=1.0, trials=20)
+        parts = [measure_consistency(Work(options, 8, "consistency", k)) for k in range(0, 20, 5)]
+        results = verdicts.Results(options, Table.concatenate(parts))
+        for case, name, degrees in (("none", FIRST, 13), ("drawn", AUGMENTED, 15)):
+            t, found = results.consistency(case, name, "nees")
+            np.testing.assert_allclose(t, [0.5, 1.0])
+            low, high = chi2.ppf([0.0005, 0.9995], degrees * 20) / 20
+            assert ((low < found) & (found < high)).all()
+        assert results.consistency("constant", FIRST, "nees")[1].min() > 100
+        mean = results.table("consistency", FIRST, case="none").where(t_h=1.0)["nees"].mean()
+        assert results.consistency("none", FIRST, "nees")[1][-1] == pytest.approx(mean, rel=1e-12)
+
+
+def test_printed_numbers_stand_in_their_places():
+    assert published.REFERENCE_ERRORS == (-0.1, -0.2, -0.3, -0.4, -0.5)
+    np.testing.assert_allclose(Options(signs="+-" * 6 + "-").initial, STATED * [*[1, -1] * 6, -1], rtol=1e-12)
+    fusion, first = published.BOTH
+    assert fusion[0].tolist() == [1.140, -3.100, -0.035, -0.014, -0.020, -0.081, -0.090]
+    assert fusion[2].tolist() == [0.470, -4.300, -0.046, -0.009, -0.079, -0.150, -0.181]
+    assert first[0].tolist() == [0.810, -5.901, -0.053, -0.033, -0.066, -0.092, -0.098]
+    assert first[4].tolist() == [-8.410, -21.201, -0.150, -0.187, -0.401, -0.504, -0.498]
+    largest = [[1.14, 4.5, 0.049, 0.016, 0.081, 0.15, 0.181], [8.41, 21.201, 0.15, 0.187, 0.401, 0.504, 0.498]]
+    np.testing.assert_array_equal(published.LARGEST, largest)
+    assert list(published.STATE) == COLUMN_ROWS
+    np.testing.assert_allclose(published.SCALE, COLUMN_UNITS, rtol=1e-12)
+    assert published.COLUMNS[published.FAMILIES["position"]] == ("latitude", "longitude")
+    assert published.COLUMNS[published.FAMILIES["velocity"]] == ("v_E", "v_N")
+
+
+BAD = {
+    "duration": (0.4, 1.01), "undamped": (5.0, 8.05, "long"), "rate": (1.0, 15.0, 2.5), "sway": (1,),
+    "latitude": (70.1, 0.0, np.nan, "north"), "latitudes": ((48.0, -71.0), (), (48.0, 48.0)), "mean": ("median",),
+    "reference_errors": ((), (-0.1, -0.1), (0.0, -0.1), (np.nan,), -0.3), "reference_noise": (-0.01,),
+    "tau": (199.0,), "taus": ((1e3, 199.0), (1e3, 1e3)), "signs": ("+" * 12, "+" * 12 + "0"), "trials": (1, 2.0),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "value"), [(name, value) for name, values in BAD.items() for value in values])
+def test_bad_options(name, value):
+    with pytest.raises(InputError, match=name):
+        Options(**{name: value})
