@@ -1,11 +1,10 @@
-"""The work of `damping-external-velocity`: options, the ship, the filters, and the pieces of work."""
+"""What all parts of `damping-external-velocity` share: options, the ship, the filters, names of states and columns."""
 
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 
-from bench.campaign import Item
 from bench.earth import SPHERE
 from bench.errors import Array, InputError, require_array, require_choice, require_flag, require_integer, require_scalar
 from bench.motion.manoeuvres import Accelerate, Straight
@@ -13,7 +12,6 @@ from bench.motion.vehicle import Vehicle
 from bench.solvers.damping import STATES, DampingModel
 from bench.solvers.damping.bias_augmented import BiasAugmented
 from bench.solvers.damping.double_filter import DoubleFilter
-from bench.table import Table
 from bench.units import DEG
 
 HOUR = 3600.0
@@ -23,6 +21,7 @@ SWAY = (1 * DEG, 2 * DEG, 5 * DEG)  # heading, pitch, roll
 SWAY_RATE = (2 * np.pi / 12, 2 * np.pi / 8, 2 * np.pi / 10)  # rad/s
 WINDOW = 4 * HOUR  # of Xbar
 STEP = 300.0  # s, of which runs last a whole number
+TRIALS_AN_ITEM = 5
 EVERY = 120  # samples of the INS (s) from one kept row to the next
 FREE, FIRST, SECOND, FUSION, AUGMENTED = "free INS", "filter 1", "filter 2", "fusion", "15 states"
 FILTERS = (FIRST, SECOND, FUSION, AUGMENTED)
@@ -143,35 +142,6 @@ class Work:
 def signed(signs: str) -> Array:
     """Return +1 and -1 of a text of signs."""
     return np.array([1.0 if sign == "+" else -1.0 for sign in signs])
-
-
-TRIALS_AN_ITEM = 5
-
-
-def items(options: Options, seed: int) -> list[Item]:
-    """Return the INS on the rig first (the longest), then scans and trials of the fast mode."""
-    work = [Work(options, seed, "ins")]
-    work += [Work(options, seed, "scan", k) for k in range(len(options.latitudes))]
-    work += [Work(options, seed, "consistency", k) for k in range(0, options.trials, TRIALS_AN_ITEM)]
-    work += [Work(options, seed, "undamped"), Work(options, seed, "fast")]
-    return [Item(f"{k:02d}-{one.part}", one) for k, one in enumerate(work)]
-
-
-def measure(work: Work) -> Table:
-    """Do one item."""
-    from bench.experiments._damping_consistency import measure_consistency
-    from bench.experiments._damping_runs import measure_fast, measure_ins
-    from bench.experiments._damping_scan import measure_scan
-    from bench.experiments._damping_undamped import measure_undamped
-
-    parts = {
-        "ins": measure_ins,
-        "fast": measure_fast,
-        "scan": measure_scan,
-        "consistency": measure_consistency,
-        "undamped": measure_undamped,
-    }
-    return parts[work.part](work)
 
 
 def ship(options: Options, latitude: float | None = None) -> Vehicle:

@@ -7,10 +7,11 @@ mean in the fusion) is scanned with the error model, and the reading that meets 
 
 from bench.experiment import Claim, Condition, Experiment
 from bench.experiments._damping_evaluation import evaluate
+from bench.experiments._damping_parts import items, measure
 from bench.experiments._damping_published import FAMILIES, TABLES
 from bench.experiments._damping_recording import record
 from bench.experiments._damping_scan import BOTH_TABLES
-from bench.experiments._damping_trials import FILTERS, Options, items, measure
+from bench.experiments._damping_trials import FILTERS, Options
 from bench.experiments._damping_undamped import PERIODS
 from bench.references import ZHAO
 
