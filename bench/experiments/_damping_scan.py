@@ -148,16 +148,17 @@ class Best:
 
 
 def criteria(deviation: Array) -> dict[str, Array]:
-    """Return by how much readings miss the tables; deviation (2, signs, 5, m, 7) is relative to the columns' largest.
+    """Return by how much readings miss the tables; deviation (2, signs, m, 5, 7) is relative to the columns' largest.
 
     Root mean squares for whole tables, largest deviations for single groups of columns; shape (signs, m) each.
     """
-    squares = (deviation**2).mean(axis=(2, 4))
+    squares = np.einsum("tsmcd,tsmcd->tsm", deviation, deviation) / BOTH[0].size
+    largest = np.abs(deviation).max(axis=3)
     found = {BOTH_TABLES: np.sqrt(squares.mean(axis=0))}
     for k, table in enumerate(TABLES):
         found[table] = np.sqrt(squares[k])
         for family, columns in FAMILIES.items():
-            found[f"{table}, {family}"] = np.abs(deviation[k][..., columns]).max(axis=(1, 3))
+            found[f"{table}, {family}"] = largest[k][..., columns].max(axis=2)
     return found
 
 
@@ -165,22 +166,22 @@ def best_readings(responses: Responses, setting: Setting) -> dict[str, Best]:
     """Return the best reading of one setting by each criterion."""
     best: dict[str, Best] = {}
     combinations = sign_table()
-    constants = np.array(REFERENCE_ERRORS)[:, None, None]
+    constants = np.array(REFERENCE_ERRORS)[:, None]
 
     def total(values: Array, noise: float) -> Array:
-        fixed = values[0] + noise * values[-1] + constants * values[-2]  # (5, m, 7)
-        return np.asarray(np.einsum("sk,kmc->smc", combinations, values[1:-2])[:, None] + fixed)
+        fixed = values[0][:, None] + noise * values[-1][:, None] + constants * values[-2][:, None]  # (m, 5, 7)
+        return np.asarray(np.einsum("sk,kmc->smc", combinations, values[1:-2])[:, :, None] + fixed)
 
     for noise in NOISES:
         first, second = total(responses.one, noise), total(responses.two, noise)
         for window, values in responses.means.items():
-            p1 = responses.p1 + responses.gamma[:, None] * total(values, noise) ** 2
-            share = responses.p2 / (p1 + responses.p2)
+            p1 = responses.p1[:, None] + responses.gamma[:, None, None] * total(values, noise) ** 2
+            share = responses.p2[:, None] / (p1 + responses.p2[:, None])
             tables = np.stack([share * first + (1 - share) * second, first])
             for attitude, factor in ATTITUDES.items():
                 shown = tables.copy()
                 shown[..., FAMILIES["attitude"]] *= factor
-                deviation = (shown - BOTH[:, None, :, None]) / LARGEST[:, None, None, None]
+                deviation = (shown - BOTH[:, None, None]) / LARGEST[:, None, None, None]
                 for criterion, misfit in criteria(deviation).items():
                     s, k = np.unravel_index(np.argmin(misfit), misfit.shape)
                     if criterion in best and best[criterion].misfit <= misfit[s, k]:
@@ -192,7 +193,7 @@ def best_readings(responses: Responses, setting: Setting) -> dict[str, Best]:
                         f"attitude as {attitude}, signs {signs}"
                     )
                     best[criterion] = Best(
-                        float(misfit[s, k]), label, float(responses.t[k]), signs, factor, shown[:, s, :, k].copy()
+                        float(misfit[s, k]), label, float(responses.t[k]), signs, factor, shown[:, s, k].copy()
                     )
     return best
 

@@ -75,7 +75,7 @@ class Options:
     latitude: float = 52.0
     tau: float = 3600.0
     reference_noise: float = 0.05
-    signs: str = "++++++--++-++"
+    signs: str = "++++-+--++-++"
     mean: str = "window"
     sway: bool = False
     latitudes: tuple[float, ...] = (40.0, 44.0, 48.0, 52.0, 56.0)
