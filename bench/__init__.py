@@ -30,6 +30,7 @@ Seeds
 """
 
 from importlib import import_module
+from pkgutil import iter_modules
 from typing import TYPE_CHECKING, Any
 
 from bench.earth import WGS84, Earth
@@ -52,8 +53,9 @@ if TYPE_CHECKING:
 
 __version__ = "0.1.0"
 
-# Names whose modules need more than numpy, imported when first used: `import bench` stays fast.
+# Imported when first used, because they need more than numpy: `import bench` stays fast.
 _LAZY = {"Rig": "bench.rig", "solver": "bench.solvers", "run": "bench.runner"}
+_MODULES = tuple(module.name for module in iter_modules(__path__) if not module.name.startswith("_"))
 
 __all__ = [
     "WGS84",
@@ -84,8 +86,10 @@ __all__ = [
 def __getattr__(name: str) -> Any:
     if name in _LAZY:
         return getattr(import_module(_LAZY[name]), name)
+    if name in _MODULES:
+        return import_module(f"bench.{name}")
     raise AttributeError(f"module 'bench' has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:
-    return sorted(__all__)
+    return sorted({*__all__, *_MODULES})

@@ -75,7 +75,7 @@ class RunOptions:
     jobs: int | None = None
     """Worker processes; the default is the number of CPUs."""
     record: bool = True
-    """Write the Rerun recording."""
+    """Write the Rerun recording, if the experiment has one."""
     force: bool = False
     """Overwrite the run that is in the folder."""
     scheduler: str | None = None

@@ -148,7 +148,8 @@ def require_instance(name: str, value: object, cls: type | tuple[type, ...]) -> 
     if not isinstance(value, cls):
         names = [each.__name__ for each in (cls if isinstance(cls, tuple) else (cls,))]
         wanted = " or ".join(f"{'an' if name[0] in 'AEIO' else 'a'} {name}" for name in names)
-        raise InputError(f"{name} must be {wanted}, got {value!r}")
+        got = repr(value)
+        raise InputError(f"{name} must be {wanted}, got {got if len(got) < 100 else type(value).__name__}")
 
 
 def require_times(name: str, value: ArrayLike) -> Array:

@@ -7,7 +7,7 @@ import base64
 import html
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
@@ -45,7 +45,7 @@ img { max-width: 100%; } figcaption { color: #555; font-size: 0.9rem; } code { b
 
 
 def verdict_table(outcome: Outcome, *, reasons: bool = True) -> Table:
-    """Return published against measured, with verdicts, and with place and reason if there is room."""
+    """Return published against measured, with verdicts; without reasons verdicts come first, places are left out."""
     columns = {
         "claim": [claim.key for claim, _ in outcome.verdicts],
         "where": [claim.place for claim, _ in outcome.verdicts],
@@ -54,7 +54,7 @@ def verdict_table(outcome: Outcome, *, reasons: bool = True) -> Table:
         "verdict": [verdict.judgement for _, verdict in outcome.verdicts],
         "reason": [verdict.reason for _, verdict in outcome.verdicts],
     }
-    chosen = [name for name in columns if reasons or name not in ("where", "reason")]
+    chosen = list(columns) if reasons else ["claim", "verdict", "published", "measured"]
     return Table({name: np.array(columns[name]) for name in chosen}, "Published against measured")
 
 
@@ -65,6 +65,29 @@ def condition_table(outcome: Outcome) -> Table:
         [(c.name, c.value, c.status, c.note) for c in outcome.experiment.conditions],
         "Conditions",
     )
+
+
+def condition_text(outcome: Outcome) -> str:
+    """Return by which options a run differs from the conditions."""
+    default = asdict(outcome.experiment.options())
+    changed = [
+        f"`{name}` is {value}, by default {default[name]}"
+        for name, value in asdict(outcome.options).items()
+        if value != default[name]
+    ]
+    return "At these conditions claims are judged." + (f" **In this run** {'; '.join(changed)}." if changed else "")
+
+
+def results_markdown(outcome: Outcome) -> str:
+    """Return summary and verdicts, as recordings show them."""
+    table = verdict_table(outcome, reasons=False)
+    return f"# Results\n\n{outcome.evaluation.summary}\n\n{table.markdown()}"
+
+
+def configuration_markdown(outcome: Outcome, shown: str) -> str:
+    """Return title, what is shown, and the conditions, as recordings show them."""
+    parts = f"# {outcome.experiment.title}", shown, condition_text(outcome), condition_table(outcome).markdown()
+    return "\n\n".join(parts)
 
 
 def blocks(outcome: Outcome) -> list[Block]:
@@ -88,6 +111,7 @@ def blocks(outcome: Outcome) -> list[Block]:
     return [
         *content,
         Heading("Conditions"),
+        condition_text(outcome),
         condition_table(outcome),
         Heading("How each claim is judged"),
         rules,

@@ -259,6 +259,7 @@ class TestBadInput:
             ("dual-euler-turntable", {"rates": (0.1, 0.1)}, "rates must be different positive numbers"),
             ("dual-euler-turntable", {"rates": (-0.1,)}, "rates must be a positive number, got -0.1"),
             ("dual-euler-navigation", {"rest": -1.0}, "rest must be a number >= 0, got -1.0"),
+            ("dual-euler-turntable", {"duration": 50.0}, "rest must be shorter than duration = 50 s, got 100"),
             ("dual-euler-navigation", {"fluctuation": float("nan")}, "fluctuation must be finite"),
         ],
     )

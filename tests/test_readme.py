@@ -36,7 +36,7 @@ def test_catalogue_is_current():
 def test_python_runs(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     blocks = re.findall(r"```python\n(.*?)```", README.read_text(), flags=re.DOTALL)
-    assert len(blocks) == 4
+    assert len(blocks) == 5
     code = "\n".join(blocks).replace("trials=100", "trials=2")
     exec(compile(code, "README.md", "exec"), {"__name__": "readme"})
     residual, angles = capsys.readouterr().out.split("\n", 1)

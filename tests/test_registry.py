@@ -1,5 +1,6 @@
 """Discovery: one file, one algorithm; duplicates are refused; private modules are left alone."""
 
+import subprocess
 import sys
 
 import pytest
@@ -83,3 +84,10 @@ def test_unknown_solver_and_kind_list_the_valid_ones():
 def test_unknown_solver_option_lists_the_valid_ones():
     with pytest.raises(bench.InputError, match="nine-accelerometer has no option 'order'; options: integration"):
         bench.solver("gyro-free", "nine-accelerometer", order=4)
+
+
+def test_modules_are_there_without_an_import_of_their_own():
+    code = "import bench; print(bench.euler_angles.track.__name__, 'turntable' in dir(bench)); bench.nothing"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert run.stdout == "track True\n"
+    assert "module 'bench' has no attribute 'nothing'" in run.stderr

@@ -49,7 +49,7 @@ def _record(
     """Write a recording of runs: increments and what solves them, by what is added to the names."""
     from bench.mjcf import compile_model
     from bench.record.attitude import AttitudeEstimate, AttitudeRun, write_attitude_recording
-    from bench.report import condition_table, verdict_table
+    from bench.report import configuration_markdown, results_markdown
 
     estimates = {}
     for label, (dtheta_b, shown) in runs.items():
@@ -63,9 +63,8 @@ def _record(
     run = AttitudeRun(
         title=f"{outcome.experiment.name}, {rate:g} Hz",
         estimates=estimates,
-        configuration=f"# {outcome.experiment.title}\n\nShown: {rate:g} Hz, ideal increments{phase}.\n\n"
-        f"{condition_table(outcome).markdown()}",
-        results=f"# Results\n\n{outcome.evaluation.summary}\n\n{verdict_table(outcome, reasons=False).markdown()}",
+        configuration=configuration_markdown(outcome, f"Shown: {rate:g} Hz, ideal increments{phase}."),
+        results=results_markdown(outcome),
         parameters={"experiment": outcome.experiment.name, "seed": outcome.seed, "rate_hz": rate},
         model=compile_model("imu"),
         figures={title: file for title, file in drawn.items() if file.is_file()},

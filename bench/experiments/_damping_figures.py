@@ -1,14 +1,16 @@
 """The figures of `damping-external-velocity`: figures 3 to 5 of the paper, tables, consistency, the undamped INS."""
 
+from typing import Literal
+
 import numpy as np
 
 from bench.evaluation import chi_square_bounds
 from bench.experiments._damping_consistency import CONSTANT_ERROR, DRAWN, PERFECT
-from bench.experiments._damping_published import BOTH, COLUMNS, REFERENCE_ERRORS, TABLES, UNITS
+from bench.experiments._damping_published import BOTH, REFERENCE_ERRORS, TABLES, UNITS
+from bench.experiments._damping_results import Results, read_heads
 from bench.experiments._damping_scan import BOTH_TABLES
 from bench.experiments._damping_trials import AUGMENTED, FILTERS, FIRST, FREE, FUSION, HOUR, SECOND
 from bench.experiments._damping_undamped import GYRO_CASE, PERIODS, VELOCITY_CASE, theory
-from bench.experiments._damping_verdicts import Results
 from bench.figures import Figure, Line, Panel
 from bench.units import ARCMIN
 
@@ -74,13 +76,13 @@ def _table_figure(results: Results) -> Figure:
     best = results.best(BOTH_TABLES)
     constants = np.array(REFERENCE_ERRORS)
     panels = []
-    for k, column in enumerate(COLUMNS):
+    for k, head in enumerate(read_heads(best.factor)):
         lines = []
         for row, (table, colour) in enumerate(zip(TABLES, (COLOURS[FUSION], COLOURS[FIRST]), strict=True)):
             name = (FUSION, FIRST)[row]
             lines.append(Line(f"{name}, printed ({table})", constants, BOTH[row, :, k], colour, "o"))
             lines.append(Line(f"{name}, best reading", constants, best.tables[row, :, k], colour, "-"))
-        panels.append(Panel("constant error, m/s", f"{column}, {UNITS[k]}", lines))
+        panels.append(Panel("constant error, m/s", head, lines))
     caption = f"Tables 1 and 2 against the reading of the unstated conditions that fits both best: {best.label}."
     return Figure("tables", "Steady-state errors against the constant error", caption, panels, 4, shared_legend=True)
 
@@ -99,11 +101,13 @@ def _consistency_figure(results: Results) -> Figure:
                 lines.append(Line(f"{name}", t, values / k, COLOURS[name]))
             low, high = (bound / degrees for bound in chi_square_bounds(degrees, results.options.trials))
             ends = np.array([t[0], t[-1]])
-            lines.append(Line("95 % bounds", ends, np.ones(2), 7, ":", np.full(2, low), np.full(2, high)))
+            lines.append(Line("expected, 95 % bounds", ends, np.ones(2), 7, ":", np.full(2, low), np.full(2, high)))
+            scale: Literal["linear", "log"] = "linear" if (measure, case) == ("nees", PERFECT) else "log"
             title = "reference as believed" if case == PERFECT else f"reference off by {results.options.focus:g} m/s"
-            panels.append(Panel("t, h", f"{measure.upper()} / degrees of freedom", lines, title, yscale="log"))
+            panels.append(Panel("t, h", f"{measure.upper()} / degrees of freedom", lines, title, yscale=scale))
     caption = (
-        f"Means over {results.options.trials} trials of errors drawn as the filters believe them. 1 is consistent; "
-        "above, a filter claims to be better than it is. The fusion has no innovation, so no NIS."
+        f"Normalised squares of errors (NEES) and of innovations (NIS), means over {results.options.trials} trials of "
+        "errors drawn as the filters believe them. 1 is consistent; above, a filter claims to be better than it is. "
+        "The fusion has no innovation, so no NIS."
     )
     return Figure("consistency", "Consistency", caption, panels, columns=2)

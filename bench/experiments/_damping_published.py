@@ -9,7 +9,7 @@ import numpy as np
 from bench.units import ARCMIN
 
 REFERENCE_ERRORS = (-0.1, -0.2, -0.3, -0.4, -0.5)  # m/s, east and north
-COLUMNS = ("latitude", "longitude", "attitude 1", "attitude 2", "attitude 3", "v_E", "v_N")
+COLUMNS = ("latitude", "longitude", "phi_E", "phi_N", "phi_U", "v_E", "v_N")
 UNITS = ("arcmin",) * 5 + ("m/s",) * 2
 STATE = (2, 3, 4, 5, 6, 0, 1)  # of the error model, behind each column
 SCALE = np.array([ARCMIN] * 5 + [1.0] * 2)

@@ -6,8 +6,8 @@ import numpy as np
 
 from bench.errors import Array
 from bench.experiment import Outcome
+from bench.experiments._damping_results import Results
 from bench.experiments._damping_trials import ERRORS, FILTERS, FREE, FUSION, HOUR, SIGMAS, WEIGHTS, ship
-from bench.experiments._damping_verdicts import Results
 from bench.table import Table
 from bench.units import DEG
 
@@ -15,7 +15,7 @@ from bench.units import DEG
 def record(outcome: Outcome, path: Path) -> None:
     """Write the recording from the rows of the run with the INS."""
     from bench.record.damping import DampingRun, Estimate, write_damping_recording
-    from bench.report import condition_table, verdict_table
+    from bench.report import configuration_markdown, results_markdown
 
     results: Results = outcome.evaluation.focus
     options = outcome.options
@@ -39,9 +39,8 @@ def record(outcome: Outcome, path: Path) -> None:
         true_place=place,
         gamma=fusion["gamma"],
         weight=_stacked(fusion, WEIGHTS),
-        configuration=f"# {outcome.experiment.title}\n\nShown: C = {options.focus:g} m/s.\n\n"
-        f"{condition_table(outcome).markdown()}",
-        results=f"# Results\n\n{outcome.evaluation.summary}\n\n{verdict_table(outcome, reasons=False).markdown()}",
+        configuration=configuration_markdown(outcome, f"Shown: C = {options.focus:g} m/s."),
+        results=results_markdown(outcome),
         parameters={"experiment": outcome.experiment.name, "seed": outcome.seed, "reference_error": options.focus},
         figures={title: file for title, file in drawn.items() if file.is_file()},
     )

@@ -15,7 +15,7 @@ import numpy as np
 from bench.errors import Array, Indices
 from bench.experiments._damping_published import BOTH, FAMILIES, LARGEST, REFERENCE_ERRORS, SCALE, STATE, TABLES
 from bench.experiments._damping_runs import CONSTANT, make_rows
-from bench.experiments._damping_trials import ERRORS, FIRST, FUSION, HOUR, Options, Work, ship
+from bench.experiments._damping_trials import ERRORS, FIRST, FUSION, HOUR, Options, Work, place, ship
 from bench.solvers.damping import DampingModel, InsSamples
 from bench.solvers.damping.double_filter import DoubleFilter
 from bench.table import Table
@@ -31,7 +31,7 @@ EARLIEST = 8 * 3600  # s: before that nothing can be called steady
 SIGNED = (0, 1, 2, 4, 6, 7, 8, 10, 11, 12)
 UNSIGNED = (3, 5)
 # What an "attitude error" is: phi, or the error of pitch, roll and yaw; and its unit, which the heads do not tell.
-ATTITUDES = {"phi, arcmin": 1.0, "-phi, arcmin": -1.0, "phi, deg": 1 / 60, "-phi, deg": -1 / 60}
+ATTITUDES = {"phi in arcmin": 1.0, "-phi in arcmin": -1.0, "phi in deg": 1 / 60, "-phi in deg": -1 / 60}
 BOTH_TABLES = "both tables"
 
 
@@ -132,6 +132,11 @@ def sign_table() -> Array:
     return np.array(list(product((1.0, -1.0), repeat=len(SIGNED))))
 
 
+def readings_each(options: Options) -> int:
+    """Return how many readings of the tables one setting has."""
+    return len(sign_table()) * len(reading_times(options)) * len(NOISES) * len(MEANS) * len(ATTITUDES)
+
+
 @dataclass(frozen=True, eq=False)
 class Best:
     """The reading that fits best by one criterion: how well, what it is, when (s), and its tables (2, 5, 7).
@@ -188,7 +193,7 @@ def best_readings(responses: Responses, setting: Setting) -> dict[str, Best]:
                         continue
                     signs = _sign_text(combinations[s])
                     label = (
-                        f"{setting.latitude:g} deg N, {responses.t[k] / HOUR:g} h, tau {setting.tau:g} s, "
+                        f"{place(setting.latitude)}, {responses.t[k] / HOUR:g} h, tau {setting.tau:g} s, "
                         f"R2 as {setting.r2}, Q {setting.q}, Xbar {window}, noise {noise:g} m/s, "
                         f"attitude as {attitude}, signs {signs}"
                     )

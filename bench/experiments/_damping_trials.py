@@ -144,6 +144,11 @@ def signed(signs: str) -> Array:
     return np.array([1.0 if sign == "+" else -1.0 for sign in signs])
 
 
+def place(latitude: float) -> str:
+    """Return a latitude, deg, as text."""
+    return f"{abs(latitude):g} deg {'N' if latitude > 0 else 'S'}"
+
+
 def ship(options: Options, latitude: float | None = None) -> Vehicle:
     """Return the published motion: rest, acceleration, constant velocity, on a sphere."""
     speed, course = float(np.hypot(*VELOCITY)), float(np.arctan2(*VELOCITY))

@@ -1,16 +1,13 @@
 """The verdicts of `damping-external-velocity`: divergence, convergence, accuracy, tables, consistency, periods."""
 
-from dataclasses import dataclass
-from functools import cached_property
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
 from bench.errors import Array
 from bench.evaluation import chi_square_bounds
 from bench.experiment import Verdict
-from bench.experiments._damping_consistency import CONSTANT_ERROR, DRAWN, PERFECT
+from bench.experiments._attitude_judging import withhold
+from bench.experiments._damping_consistency import CONSTANT_ERROR, DRAWN, LONGEST, PERFECT
 from bench.experiments._damping_published import (
     BOTH,
     COLUMNS,
@@ -19,138 +16,61 @@ from bench.experiments._damping_published import (
     FUSION_TABLE,
     LARGEST,
     REFERENCE_ERRORS,
-    SCALE,
-    STATE,
     TABLES,
     UNITS,
 )
+from bench.experiments._damping_results import ANGLES, LAST, PLACE, SPEED, Results
 from bench.experiments._damping_scan import BOTH_TABLES
-from bench.experiments._damping_trials import AUGMENTED, ERRORS, FILTERS, FIRST, FREE, FUSION, SECOND, Options
+from bench.experiments._damping_trials import AUGMENTED, FILTERS, FIRST, FUSION, SECOND, Options
 from bench.experiments._damping_undamped import PERIODS, theory
-from bench.table import Table
 
-LAST = 1.5  # h, over which steady-state errors are taken: a Schuler period
 BANDS = (0.1, 0.01)  # of the undamped error, within which an error must stay to have settled
 WITHIN = 0.1  # of the column's largest printed number: what counts as reproduced
 NEAR = 0.01  # of a period
 INSIDE = 0.8  # of the hourly means within their 95 % bounds: what counts as consistent
-ANGLES, PLACE, SPEED = (2, 3, 4), (0, 1), (5, 6)  # columns
+ENOUGH = 10  # trials
 
 
-class Reading(NamedTuple):
-    """Unstated conditions: by how much they miss, what they are, time, factor of attitudes, and tables (2, 5, 7)."""
-
-    misfit: float
-    label: str
-    hours: float
-    factor: float
-    tables: Array
-
-
-@dataclass(frozen=True, eq=False)
-class Results:
-    """What was measured, by part, filter and reference error."""
-
-    options: Options
-    rows: Table
-
-    @cached_property
-    def _groups(self) -> dict[tuple[str, str, str, str], Array]:
-        """Return the rows of each (part, case, name, reference error)."""
-        names = ("part", "case", "name", "reference_m_per_s")
-        keys = zip(*(self.rows[name].tolist() for name in names), strict=True)
-        found: dict[tuple[str, str, str, str], list[int]] = {}
-        for k, (part, case, name, constant) in enumerate(keys):
-            found.setdefault((part, case, name, f"{constant:g}"), []).append(k)
-        return {key: np.array(rows) for key, rows in found.items()}
-
-    def table(self, part: str, name: str, *, case: str = "", constant: float = np.nan) -> Table:
-        """Return the rows of one filter."""
-        rows = self._groups[part, case, name, f"{constant:g}"]
-        return Table({key: column[rows] for key, column in self.rows.columns.items()}, self.rows.title)
-
-    def run(self, name: str, constant: float | None = None, part: str = "ins") -> tuple[Array, Array]:
-        """Return times, h, and errors (n, 7) in the tables' columns and units; by default of the shown reference."""
-        chosen = np.nan if name == FREE else self.options.focus if constant is None else constant
-        found = self.table(part, name, constant=chosen)
-        return found["t_h"], columns_of(found)
-
-    def steady(self, name: str, constant: float | None = None) -> Array:
-        """Return the mean error of the last `LAST` hours, by column."""
-        t, errors = self.run(name, constant)
-        return np.asarray(errors[t >= t[-1] - LAST].mean(axis=0))
-
-    def steady_rms(self, name: str, constant: float | None = None) -> Array:
-        """Return the root mean square error of the last `LAST` hours, by column."""
-        t, errors = self.run(name, constant)
-        return np.asarray(np.sqrt((errors[t >= t[-1] - LAST] ** 2).mean(axis=0)))
-
-    def at(self, name: str, constant: float, hours: float) -> Array:
-        """Return the error at a time, by column."""
-        t, errors = self.run(name, constant)
-        return np.asarray(errors[int(np.argmin(np.abs(t - hours)))])
-
-    def settled(self, name: str, band: float, constant: float | None = None) -> Array:
-        """Return the hours after which the errors stay near their steady-state values, by column; inf for never.
-
-        Near is within `band` of the largest error of the undamped INS; who leaves that in the last `LAST` hours has
-        not settled.
-        """
-        t, errors = self.run(name, constant)
-        band = band * np.abs(self.run(FREE)[1]).max(axis=0)
-        outside = np.abs(errors - self.steady(name, constant)) > band
-        last = np.array([t[column][-1] if column.any() else 0.0 for column in outside.T])
-        return np.where(last > t[-1] - LAST, np.inf, last)
-
-    def best(self, criterion: str) -> "Reading":
-        """Return the scanned reading that fits best by a criterion."""
-        tables = [self._scanned(criterion, name) for name in (FUSION, FIRST)]
-        k = int(np.argmin(tables[0]["value"][::5]))
-        values = [columns_of(table)[5 * k : 5 * k + 5] for table in tables]
-        first = {name: tables[0][name][5 * k].item() for name in ("value", "label", "t_h", "factor")}
-        return Reading(first["value"], first["label"], first["t_h"], first["factor"], np.stack(values))
-
-    def _scanned(self, criterion: str, name: str) -> Table:
-        keep = (self.rows["part"] == "scan") & (self.rows["case"] == criterion) & (self.rows["name"] == name)
-        return Table({key: column[keep] for key, column in self.rows.columns.items()})
-
-    def consistency(self, case: str, name: str, measure: str) -> tuple[Array, Array]:
-        """Return hours and the mean of NEES or NIS over the trials."""
-        found = self.table("consistency", name, case=case)
-        t = np.unique(found["t_h"])
-        return t[1:], found[measure].reshape(-1, len(t)).mean(axis=0)[1:]
-
-    def trial_rms(self, case: str, name: str) -> Array:
-        """Return the root mean square error over the trials at their end, by column."""
-        found = self.table("consistency", name, case=case)
-        end = found["t_h"] == found["t_h"].max()
-        return np.asarray(np.sqrt((columns_of(found)[end] ** 2).mean(axis=0)))
-
-    def period(self, name: str) -> float:
-        """Return a period that was found, s."""
-        return float(self.table("undamped", name, case="period")["value"][0])
+def withheld(options: Options, verdicts: dict[str, Verdict]) -> dict[str, Verdict]:
+    """Return the verdicts, but those that a run at other conditions cannot judge."""
+    reasons = {"8 ": not_the_rest(options), "7 ": not_the_trials(options)}
+    reasons |= dict.fromkeys(("5 fifteen states, over trials", "6 "), not_the_trials(options) or not_the_paper(options))
+    default = not_the_paper(options)
+    found: dict[str, Verdict] = {}
+    for key, verdict in verdicts.items():
+        reason = next((why for start, why in reasons.items() if key.startswith(start)), default)
+        found |= withhold({key: verdict}, reason)
+    return found
 
 
-def columns_of(table: Table) -> Array:
-    """Return errors (n, 7) in the columns and units of the published tables."""
-    return np.stack([table[ERRORS[state]] for state in STATE], axis=1) / SCALE
+def not_the_rest(options: Options) -> str:
+    """Return why the periods of the undamped INS cannot be judged, or nothing."""
+    least = Options().undamped
+    return (
+        f"{options.undamped:g} h undamped are too short, at least {least:g} h are needed"
+        if options.undamped < least
+        else ""
+    )
 
 
-def not_the_conditions(options: Options) -> str:
-    """Return why a run cannot judge the paper, or nothing."""
+def not_the_trials(options: Options) -> str:
+    """Return why consistency cannot be judged, or nothing."""
+    if options.duration < LONGEST:
+        return f"{options.duration:g} h are too short, at least {LONGEST:g} h are needed"
+    return f"{options.trials} trials are too few, at least {ENOUGH} are needed" if options.trials < ENOUGH else ""
+
+
+def not_the_paper(options: Options) -> str:
+    """Return why the paper's claims cannot be judged, or nothing."""
     default = Options()
     if options.reference_errors != REFERENCE_ERRORS:
         return "the reference errors are not the published ones"
     if options.sway:
         return "the ship sways, that of the paper does not"
-    if set(options.latitudes) < set(default.latitudes) or set(options.taus) < set(default.taus):
+    if not (set(default.latitudes) <= set(options.latitudes) and set(default.taus) <= set(options.taus)):
         return "fewer latitudes or correlation times are scanned than by default"
-    if options.duration < default.duration or options.undamped < default.undamped:
-        return f"{options.duration:g} h and {options.undamped:g} h undamped are too short, at least " + (
-            f"{default.duration:g} h and {default.undamped:g} h are needed"
-        )
-    if options.trials < 10:
-        return f"{options.trials} trials are too few, at least 10 are needed"
+    if options.duration < default.duration:
+        return f"{options.duration:g} h are too short, at least {default.duration:g} h are needed"
     return ""
 
 
@@ -293,6 +213,8 @@ def judge_velocity(results: Results) -> Verdict:
 
 def judge_trend(results: Results) -> Verdict:
     """Judge: does the fusion change with the constant error by less than a third of what filter 1 does."""
+    if len(results.options.reference_errors) < 2:
+        return Verdict("cannot be judged", "one constant error", "two are needed for a trend")
     ends = min(results.options.reference_errors), max(results.options.reference_errors)
     fused, first = (np.abs(results.steady(name, ends[0]) - results.steady(name, ends[1])) for name in (FUSION, FIRST))
     share = fused / first

@@ -14,7 +14,7 @@ def record(outcome: Outcome, path: Path) -> None:
     """Write the recording of trial 0 with the stated IMU, in the last of the cases."""
     from bench.mjcf import compile_model
     from bench.record.dual_euler import DualEulerRun, write_dual_euler_recording
-    from bench.report import condition_table, verdict_table
+    from bench.report import configuration_markdown, results_markdown
 
     rows = outcome.rows.where(part="series", trial=0)
     case = str(rows["case"][-1])
@@ -32,8 +32,8 @@ def record(outcome: Outcome, path: Path) -> None:
         plain_t=quaternion["t_s"],
         plain=DEG * np.stack([quaternion[f"plain_{name}_deg"] for name in NAMES], axis=1),
         model=compile_model("turntable"),
-        configuration=f"# {outcome.experiment.title}\n\n{shown}\n\n{condition_table(outcome).markdown()}",
-        results=f"# Results\n\n{outcome.evaluation.summary}\n\n{verdict_table(outcome, reasons=False).markdown()}",
+        configuration=configuration_markdown(outcome, shown),
+        results=results_markdown(outcome),
         parameters={"experiment": outcome.experiment.name, "seed": outcome.seed, "case": case, "trial": 0},
         figures={title: file for title, file in drawn.items() if file.is_file()},
     )

@@ -131,6 +131,8 @@ class TableOptions:
         require_run(self.trials, self.duration)
         object.__setattr__(self, "rates", tuple(self.rates))
         require_table(self.rates, self.rest, self.fluctuation)
+        if self.rest >= self.duration:
+            raise InputError(f"rest must be shorter than duration = {self.duration:g} s, got {self.rest:g}")
 
     def cases(self, seed: int) -> list[DrivenTable]:
         """Return the tables; the seed decides the fluctuations."""

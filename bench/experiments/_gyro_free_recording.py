@@ -10,7 +10,7 @@ def record(outcome: Outcome, path: Path) -> None:
     """Write the recording of the focused trial, both systems in one scene."""
     from bench.mjcf import compile_model
     from bench.record.gyro_free import GyroFreeRun, write_gyro_free_recording
-    from bench.report import condition_table, verdict_table
+    from bench.report import configuration_markdown, results_markdown
 
     options, focus = outcome.options, outcome.evaluation.focus
     fixed = ideal(options, focus.reading.gravity)
@@ -23,8 +23,8 @@ def record(outcome: Outcome, path: Path) -> None:
         readings=found["nine"][0],
         truth=fixed.truth,
         estimates={f"{system} accelerometers": solution for system, (_, solution) in found.items()},
-        configuration=f"# {outcome.experiment.title}\n\n{shown}\n\n{condition_table(outcome).markdown()}",
-        results=f"# Results\n\n{outcome.evaluation.summary}\n\n{verdict_table(outcome, reasons=False).markdown()}",
+        configuration=configuration_markdown(outcome, shown),
+        results=results_markdown(outcome),
         parameters={"experiment": outcome.experiment.name, "seed": outcome.seed, "trial": focus.trial},
     )
     write_gyro_free_recording(path, run)

@@ -22,7 +22,7 @@ from bench.experiments._ins_frames_trials import (
 def record(outcome: Outcome, path: Path) -> None:
     """Write the recording of one flight, at the middle one of the speeds."""
     from bench.record.navigation import NavigationEstimate, NavigationRun, write_navigation_recording
-    from bench.report import condition_table, verdict_table
+    from bench.report import configuration_markdown, results_markdown
 
     options = outcome.options
     flight = Flight(sorted(options.speeds)[len(options.speeds) // 2], HARSH, True)
@@ -37,9 +37,8 @@ def record(outcome: Outcome, path: Path) -> None:
         title=f"{outcome.experiment.name}, {flight.label}",
         estimates=estimates,
         truth=estimates[DUAL.label].truth,
-        configuration=f"# {outcome.experiment.title}\n\nShown: {flight.label}, {options.rate:g} Hz.\n\n"
-        f"{condition_table(outcome).markdown()}",
-        results=f"# Results\n\n{outcome.evaluation.summary}\n\n{verdict_table(outcome, reasons=False).markdown()}",
+        configuration=configuration_markdown(outcome, f"Shown: {flight.label}, {options.rate:g} Hz."),
+        results=results_markdown(outcome),
         parameters={"experiment": outcome.experiment.name, "flight": flight.label, "rate_hz": options.rate},
         figures={title: file for title, file in drawn.items() if file.is_file()},
     )

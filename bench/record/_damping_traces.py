@@ -22,12 +22,12 @@ NAVIGATION = {  # title and unit, by state
 UNDAMPED = "undamped INS"
 ORDER = (2, 3, 0, 1, 4, 5, 6)  # of the views
 SENSORS = {
-    7: ("Accelerometer error x, micro-g", 1e-6 * STANDARD_GRAVITY),
-    10: ("eps x, deg/h (minus the gyro's error)", DEG_PER_H),
-    8: ("Accelerometer error y, micro-g", 1e-6 * STANDARD_GRAVITY),
-    11: ("eps y, deg/h", DEG_PER_H),
-    9: ("Accelerometer error z, micro-g", 1e-6 * STANDARD_GRAVITY),
-    12: ("eps z, deg/h", DEG_PER_H),
+    7: ("Left of accelerometer x, micro-g", 1e-6 * STANDARD_GRAVITY),
+    10: ("Left of eps x, deg/h (minus the gyro's error)", DEG_PER_H),
+    8: ("Left of accelerometer y, micro-g", 1e-6 * STANDARD_GRAVITY),
+    11: ("Left of eps y, deg/h", DEG_PER_H),
+    9: ("Left of accelerometer z, micro-g", 1e-6 * STANDARD_GRAVITY),
+    12: ("Left of eps z, deg/h", DEG_PER_H),
 }
 FAINT = 0.45  # how much of its colour a band keeps
 

@@ -155,8 +155,10 @@ def _blueprint(run: DampingRun, pages: Mapping[str, list[Plot]]) -> rrb.Blueprin
 
     def views(page: str) -> list[rrb.TimeSeriesView]:
         span = start, end + 0.02 * (end - start)
-        shown = enumerate(pages[page])
-        return [time_series(plot.overview, legend=k == 0, span=span, extent=plot.extent) for k, plot in shown]
+        return [
+            time_series(plot.overview, legend=k == 0 or page == "Fusion", span=span, extent=plot.extent)
+            for k, plot in enumerate(pages[page])
+        ]
 
     track = rrb.Spatial3DView(
         origin="/track",
