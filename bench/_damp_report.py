@@ -70,8 +70,8 @@ def _innovations(damped: Damped) -> Figure:
         rows = np.flatnonzero(np.isfinite(stage.nis))
         rows = rows[_thin(len(rows))]
         t = stage.t[rows] - start
-        lines = [Line("", t, stage.nis[rows], ESTIMATED, "o"), Line("99 %", t, np.full(len(t), HIGH), TRUE)]
-        panels.append(Panel(SINCE, f"NIS of {name}", lines))
+        lines = [Line("", t, stage.nis[rows], ESTIMATED, "."), Line("99 %", t, np.full(len(t), HIGH), TRUE)]
+        panels.append(Panel(SINCE, f"NIS of {name}", lines, yscale="log"))
     if damped.estimate.gamma is not None:
         panels.append(Panel(SINCE, "gamma", [Line("", damped.estimate.t - start, damped.estimate.gamma)]))
     caption = (
@@ -90,7 +90,7 @@ def damped_sentence(damped: Damped) -> str:
     aiding, steps = damped.aiding, len(damped.ins)
     text = f" `{damped.filter.name}` damped it with {len(aiding)} rows of velocity from {aiding.source}, which has "
     text += f"{aiding.gaps or 'no'} gap{'' if aiding.gaps == 1 else 's'} longer than {aiding.longest_gap:g} s: "
-    text += f"there was one at {damped.with_reference} of {steps} steps."
+    text += f"a velocity was available at {damped.with_reference} of {steps} steps."
     if rejected := sum(damped.rejected(stage) for stage in damped.stages.values()):
         text += f" {rejected} measurements did not pass the gate."
     return text

@@ -59,7 +59,7 @@ def _result(outcome: SolveOutcome, packages: dict[str, str]) -> dict[str, Any]:
         "increments": outcome.counts,
         "warnings": list(outcome.warnings),
         "initial_found": outcome.beginning.note,
-        "states": states(solution),
+        "states": states(solution, damped),
         "errors": errors[0] if errors else None,
         "damping": damped and {"stages": _rows(consistency_table(damped)), "errors": errors[1] if errors else None},
         "summary": outcome.summary,
@@ -80,7 +80,7 @@ def _record(outcome: SolveOutcome, facts: dict[str, Table], path: Path, files: d
     tables = [
         *summary_tables(solution, damped),
         *([consistency_table(damped)] if damped else []),
-        state_table(solution),
+        state_table(solution, damped),
     ]
     results = [f"# {outcome.job.title}", outcome.summary, *(f"{table.title}\n\n{table.markdown()}" for table in tables)]
 

@@ -76,29 +76,36 @@ def summary_tables(solution: Solution, damped: Damped | None) -> list[Table]:
     return tables
 
 
-def states(solution: Solution) -> dict[str, dict[str, float]]:
-    """Return the state at the start and at the end, in degrees and SI, by quantity."""
-    found = solution.trajectory
-    psi, pitch, roll = euler_from_quat(found.q_nb)
-    columns = {"t, s": found.t}
-    if not solution.attitude_only:
-        columns |= {"latitude, deg": found.latitude / DEG, "longitude, deg": found.longitude / DEG}
-        columns |= {"height, m": found.height}
-        columns |= {f"velocity {name}, m/s": found.v_n[:, k] for k, name in enumerate(DIRECTIONS)}
-    columns |= {"heading, deg": -psi / DEG % 360, "pitch, deg": pitch / DEG, "roll, deg": roll / DEG}
-    return {name: {key: float(column[k]) for key, column in columns.items()} for name, k in (("start", 0), ("end", -1))}
+def states(solution: Solution, damped: Damped | None = None) -> dict[str, dict[str, float]]:
+    """Return the states at the start and at the end, in degrees and SI, by quantity; also the damped one at the end."""
+    found = {name: _state(solution.trajectory, k, solution.attitude_only) for name, k in (("start", 0), ("end", -1))}
+    return found if damped is None else {**found, "end_damped": _state(damped.trajectory, -1, False)}
 
 
-def state_table(solution: Solution) -> Table:
-    """Return the state at the start and at the end, as text with as many digits as matter."""
+def _state(found: Trajectory, row: int, attitude_only: bool) -> dict[str, float]:
+    psi, pitch, roll = euler_from_quat(found.q_nb[row])
+    state = {"t, s": found.t[row]}
+    if not attitude_only:
+        state |= {"latitude, deg": found.latitude[row] / DEG, "longitude, deg": found.longitude[row] / DEG}
+        state |= {"height, m": found.height[row]}
+        state |= {f"velocity {name}, m/s": v for name, v in zip(DIRECTIONS, found.v_n[row], strict=True)}
+    state |= {"heading, deg": -psi / DEG % 360, "pitch, deg": pitch / DEG, "roll, deg": roll / DEG}
+    return {name: float(value) for name, value in state.items()}
+
+
+def state_table(solution: Solution, damped: Damped | None = None) -> Table:
+    """Return the state at the start and at the end, as text with as many digits as matter; free and damped."""
     digits = {"t": 6, "latitude": 9, "longitude": 9, "height": 4, "velocity": 5}
-    found = states(solution)
+    found = states(solution, damped)
+    titles = ["start", "end"]
+    if damped is not None:
+        titles = ["start", f"end by {solution.solver.name}, free", f"end by {damped.filter.name}, damped"]
 
     def text(quantity: str, value: float) -> str:
         return f"{value:z.{digits.get(quantity.split(',')[0].split()[0], 6)}f}"
 
-    rows = [(name, *(text(name, found[end][name]) for end in ("start", "end"))) for name in found["start"]]
-    return Table.from_rows(("quantity", "start", "end"), rows, "State at the start and at the end")
+    rows = [(name, *(text(name, state[name]) for state in found.values())) for name in found["start"]]
+    return Table.from_rows(("quantity", *titles), rows, "State at the start and at the end")
 
 
 def solution_figures(solution: Solution, damped: Damped | None = None) -> list[Figure]:
@@ -130,7 +137,7 @@ def report_blocks(
             content += [f"{table.title}:", table] if damped else [table]
     if damped is not None:
         content += [Heading("Filter"), consistency_table(damped)]
-    content += [Heading("States"), state_table(solution), Heading("Figures")]
+    content += [Heading("States"), state_table(solution, damped), Heading("Figures")]
     for figure in solution_figures(solution, damped):
         content.append(Image(files[f"figure {figure.name}"], figure.caption))
     for heading, table in facts.items():

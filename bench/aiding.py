@@ -106,16 +106,17 @@ class VelocityFile:
         ``key=name in the header``; without one all columns in their order, ``-`` for one that is not read, such as an
         upward velocity.
     time_unit : {"s", "ms", "us", "ns"}
-        In the recording's clock; ns are integers.
+        Of t, in the recording's clock: s, ms, us or ns; ns are integers.
     velocity_unit : {"m/s", "km/h", "kn"}
+        Of ve and vn: m/s, km/h or kn (knots).
     header : bool
         The first line holds the names; a unit in brackets behind a name must agree with the declared one.
     delimiter : {",", ";", "tab", "space"}
-        "space" is any white space.
+        The character, or the word tab or space; "space" is any white space.
     skip : int
         Lines to skip before the header or the first row.
     longest_gap : float, s
-        Between rows farther apart there is no velocity.
+        Between rows farther apart than this, s, there is no velocity.
 
     Raises
     ------

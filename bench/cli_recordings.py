@@ -22,7 +22,8 @@ Vector = tuple[float, float, float]
 class SolveCommand:
     """Run a navigation or attitude solver on recorded data, and write solution, errors, figures and recording.
 
-    `strapbench solve --format NAME --solver NAME --initial NAME --filter NAME --help` shows the options of those.
+    `strapbench solve --format NAME --solver NAME --initial NAME --aiding FILE --filter NAME --help` shows the options
+    of those, or of as many of them as are given.
     """
 
     imu: Annotated[Path, tyro.conf.Positional]
@@ -50,7 +51,7 @@ class SolveCommand:
     interpolate: bool = True
     """Compare at all rows of the reference; otherwise only at those within 1 us of an update of the solver."""
     aiding: Path | None = None
-    """File with an external velocity for a damping filter; `--aiding-format.columns` and units say what it holds."""
+    """File with an external velocity for a damping filter; `--aiding FILE --help` shows how to say what it holds."""
     filter: str | None = None
     """Damping filter, see `strapbench list`; the solver runs free, with --solver.height held."""
     record: bool = True
@@ -209,7 +210,7 @@ def _solve(common: SolveCommand, parts: dict[str, Any]) -> None:
         print_table(table)
     if outcome.damped is not None:
         print_table(consistency_table(outcome.damped))
-    print_table(state_table(solution))
+    print_table(state_table(solution, outcome.damped))
     print(outcome.summary)
     print_files(outcome.files)
 

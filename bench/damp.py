@@ -7,12 +7,14 @@
     damped.trajectory, damped.estimate.x  # corrected, at the solution's times; estimated errors, once a second
 """
 
+import warnings
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from bench.aiding import VelocityAiding
-from bench.errors import Array, InputError, require_instance, require_scalar
+from bench.errors import Array, BenchWarning, InputError, require_instance, require_scalar
 from bench.interpolation import SAME_TIME, Comparison, sampled
 from bench.rotation import quat_conjugate, quat_from_rotvec, quat_multiply, quat_normalize, rotvec_from_quat
 from bench.solve import Solution
@@ -20,6 +22,11 @@ from bench.solvers.attitude import AttitudeSolver
 from bench.solvers.damping import DampingFilter, DampingSolution, InsSamples, error_states
 from bench.solvers.navigation import NavigationSolver
 from bench.trajectory import Trajectory
+
+STEP = 1.0  # s, of the filter
+EXPECTED_NIS = 2.0  # mean of chi-square of 2 degrees
+FAR = 100.0  # NIS of the first velocity: a filter takes what stays for errors of the INS, and the mean tells nothing
+TOLERABLE = 10.0  # a velocity in knots taken for m/s, or a time that is off, makes far more of it than a wrong noise
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,8 +77,29 @@ class Damped:
         """Return how many measurements of a stage did not pass its gate."""
         return int(np.count_nonzero(np.isfinite(stage.nis) & np.logical_not(stage.used)))
 
+    def doubts(self) -> Iterator[str]:
+        """Yield what makes the external velocity doubtful: too little of it, or too far from the INS."""
+        steps, source = len(self.ins), self.aiding.source
+        if 2 * self.with_reference < steps:
+            yield (
+                f"{source}: a velocity was available at {self.with_reference} of {steps} steps only; check its time "
+                f"unit, clock and offset, and longest_gap = {self.aiding.longest_gap:g} s"
+            )
+        check = "check the velocity's unit, axes, time unit, clock and offset, and the noises that the filter supposes"
+        for name, stage in self.stages.items():
+            taken = stage.used & np.isfinite(stage.nis)
+            used, rejected = stage.nis[taken], self.rejected(stage)
+            if len(used) and (mean := float(used.mean())) > TOLERABLE * EXPECTED_NIS:
+                yield f"{source}: the mean NIS of {name} is {mean:.0f}, {EXPECTED_NIS:g} is expected; {check}"
+            elif rejected > len(used):
+                total = rejected + len(used)
+                yield f"{source}: {rejected} of {total} measurements did not pass the gate of {name}; {check}"
+            elif name != "velocity-change" and len(used) and used[0] > FAR:
+                apart = float(np.hypot(*stage.innovation[taken][0]))
+                yield f"{source}: the first velocity is {apart:.3g} m/s off that of the INS, NIS {used[0]:.0f}; {check}"
 
-def damp(solution: Solution, aiding: VelocityAiding, damping: DampingFilter, *, step: float = 1.0) -> Damped:
+
+def damp(solution: Solution, aiding: VelocityAiding, damping: DampingFilter, *, step: float = STEP) -> Damped:
     """Return the solution of a navigation solver with its errors estimated and taken off.
 
     Parameters
@@ -92,6 +120,13 @@ def damp(solution: Solution, aiding: VelocityAiding, damping: DampingFilter, *, 
         is there at none of the steps.
     AccuracyError
         If an estimate is no longer finite.
+
+    Warns
+    -----
+    BenchWarning
+        If a velocity is available at fewer than half of the steps, if most measurements do not pass the gate, if the
+        mean NIS of those that do is ten times what is expected, or if the first one is ten standard deviations off:
+        often a wrong unit or clock.
     """
     for name, value, cls in (
         ("solution", solution, Solution),
@@ -117,10 +152,14 @@ def damp(solution: Solution, aiding: VelocityAiding, damping: DampingFilter, *, 
     estimate = damping.solve(ins, v_ref)
     trajectory = _carried(free, samples, estimate.corrected(ins))
     judged = solution.comparison
-    if judged is None:
-        return Damped(damping, aiding, ins, v_ref, estimate, trajectory)
-    comparison, true = Comparison.of(trajectory, judged.reference), error_states(judged.estimate, judged.reference)
-    return Damped(damping, aiding, ins, v_ref, estimate, trajectory, comparison, true)
+    comparison, true = None, None
+    if judged is not None:
+        comparison = Comparison.of(trajectory, judged.reference)
+        true = error_states(judged.estimate, judged.reference)
+    damped = Damped(damping, aiding, ins, v_ref, estimate, trajectory, comparison, true)
+    for doubt in damped.doubts():
+        warnings.warn(doubt, BenchWarning, stacklevel=2)
+    return damped
 
 
 def require_held_height(solver: NavigationSolver | AttitudeSolver) -> None:

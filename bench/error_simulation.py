@@ -94,8 +94,10 @@ class ErrorSimulation:
         Raises
         ------
         InputError
-            If the samples do not follow those of the chunk before.
+            If an argument is of another class, or the samples do not follow those of the chunk before.
         """
+        require_instance("state", state, SimulationState)
+        require_instance("truth", truth, InsSamples)
         from bench._error_simulation_kernels import propagate
         from bench.solvers.damping._samples import deflection
         from bench.solvers.damping._serial import path_rows, rates, shares
@@ -123,8 +125,9 @@ def disturbed(truth: InsSamples, x: ArrayLike) -> InsSamples:
     Raises
     ------
     InputError
-        If the errors have another shape or are not finite.
+        If `truth` is of another class, or the errors have another shape or are not finite.
     """
+    require_instance("truth", truth, InsSamples)
     columns = np.shape(x)[-1] if np.ndim(x) == 2 else SIZE
     x = require_array("x", x, (len(truth), columns if columns in (7, 15) else SIZE))
     v_n = truth.v_n.copy()
@@ -154,6 +157,7 @@ def reference_velocity(
     InputError
         If an argument breaks its rule.
     """
+    require_instance("truth", truth, InsSamples)
     error = require_array("error", error, (2,))
     noise = require_scalar("noise", noise, minimum=0.0)
     rng = _generator(require_integer("seed", seed, minimum=0), require_integer("trial", trial, minimum=0), REFERENCE)

@@ -25,7 +25,7 @@ class Line:
     x: Values
     y: Values
     colour: int = 0
-    style: str = "-"  # matplotlib line styles, or a marker: "o", "x"
+    style: str = "-"  # matplotlib line styles, or a marker: "o", "x", or "." for small ones
     low: Values | None = None
     high: Values | None = None
     note: str = ""  # written beside the middle of the curve
@@ -125,7 +125,7 @@ def _draw_panel(axes: "Axes", panel: Panel) -> None:
 
     for line in panel.lines:
         colour = COLOURS[line.colour % len(COLOURS)]
-        marks = line.style in ("o", "x")
+        marks = line.style in ("o", "x", ".")
         axes.plot(
             line.x,
             line.y,

@@ -13,7 +13,7 @@ import numpy as np
 
 from bench._damp_report import damped_sentence
 from bench.aiding import VelocityAiding, VelocityFile
-from bench.damp import Damped, damp, require_held_height
+from bench.damp import STEP, Damped, damp, require_held_height
 from bench.earth import WGS84, Earth
 from bench.errors import BenchWarning, InputError, require_array
 from bench.formats import Format
@@ -96,6 +96,7 @@ class SolveJob:
             raise InputError("aiding and aiding_format must be given together: columns and units must be declared")
         if self.filter is not None:
             require_held_height(self.solver)
+            self.filter.start(STEP)  # its options must fit the step
 
     @property
     def title(self) -> str:
@@ -137,7 +138,7 @@ class SolveOutcome:
     damped : Damped or None
         If there is a filter.
     warnings : tuple of str
-        What is doubtful in the files.
+        What is doubtful in the files, and in how the velocity fits the solution.
     files : dict of str to Path
         What was written, by kind.
     """
@@ -256,7 +257,9 @@ def run_job(
     damped = None
     if aiding is not None and job.filter is not None:
         say(f"Damping with {job.filter.name} ...")
-        damped = damp(solution, aiding, job.filter)
+        with _collected(say) as found:
+            damped = damp(solution, aiding, job.filter)
+        doubts += found
     outcome = SolveOutcome(job, inputs, recording, begin, solution, damped, tuple(doubts))
     if folder is None:
         return outcome

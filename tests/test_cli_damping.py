@@ -1,6 +1,7 @@
 """Damping on the command line: a simulated ship, its log as a file, and what is in the folder then."""
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -112,9 +113,15 @@ def test_what_is_used_is_kept_and_said(solved):
     for text in (
         "navigation-frame, free",
         "double-filter, damped",
-        "1 gap longer than 2.5 s: there was one at 1180 of 1201 steps",
+        "1 gap longer than 2.5 s: a velocity was available at 1180 of 1201 steps",
     ):
         assert text in report
+    ends = json.loads((solved / "result.json").read_text())["states"]
+    damped = Table.read_parquet(solved / "tables" / "damped.parquet")
+    assert ends["end_damped"]["velocity north, m/s"] == damped["velocity_north_m_per_s"][-1]
+    assert ends["end"]["velocity north, m/s"] != ends["end_damped"]["velocity north, m/s"]
+    assert "end by double-filter, damped" in report
+    assert "end by double-filter, damped" in static_text(solved / "recording.rrd", "/results")
     figures = {path.stem for path in (solved / "figures").iterdir()}
     assert figures == {"track", "velocity", "attitude", "errors", "estimated_errors", "innovations"}
 
@@ -159,6 +166,25 @@ def test_noises_are_typed_in_the_units_of_their_names(folder, monkeypatch):
 
 
 @pytest.mark.parametrize(
+    ("name", "unit", "chosen", "message"),
+    [
+        ("time", "ms", "velocity-error", "a velocity was available at 2 of 1201 steps only"),
+        ("velocity", "m/s", "double-filter", "the mean NIS of velocity-change is "),
+        ("velocity", "m/s", "bias-augmented", "the first velocity is 11."),  # (1/0.5144 - 1) of 12 m/s
+    ],
+)
+def test_a_wrong_unit_of_the_velocity_is_told(name, unit, chosen, message, folder, capsys, monkeypatch):
+    """A log in knots taken for m/s; one in s taken for ms lies in the first 1.2 s of the recording."""
+    undrawn(monkeypatch)
+    wrong = [*LOG, f"--aiding-format.{name}-unit", unit, "--filter", chosen]
+    out = folder / "out"
+    assert main(["solve", "imu.csv", *CSV, *HELD, *START, *wrong, "--no-record", "--out", str(out)]) == 0
+    assert f"Warning: log.csv: {message}" in " ".join(capsys.readouterr().out.split())
+    assert any(message in doubt for doubt in json.loads((out / "result.json").read_text())["warnings"])
+    assert f"Warning: log.csv: {message}" in (out / "report.md").read_text()
+
+
+@pytest.mark.parametrize(
     ("arguments", "message"),
     [
         ([*HELD, *LOG, "--filter", "double"], "unknown filter 'double' (did you mean 'double-filter'?)"),
@@ -167,6 +193,10 @@ def test_noises_are_typed_in_the_units_of_their_names(folder, monkeypatch):
         (["--solver", "navigation-frame", *LOG, "--filter", "velocity-error"], "--solver.height held"),
         (["--solver", "rotation-vector", *LOG, "--filter", "velocity-error"], "must be a navigation solver"),
         ([*HELD, "--aiding", "no.csv", *LOG[2:], "--filter", "velocity-error"], "must be a file, got 'no.csv'"),
+        (
+            [*HELD, *LOG, "--filter", "velocity-error", "--filter.model.tau-g-s", "1"],
+            "tau_g must be at least 10 steps of the filter, 10 s at steps of 1 s, got 1 s",
+        ),
         ([*HELD, *LOG, "--aiding", "imu.csv", "--filter", "velocity-error"], "imu.csv, line 1: column 've'"),
     ],
 )
@@ -206,6 +236,25 @@ def test_help_shows_the_options_of_the_filter(capsys):
     printed = capsys.readouterr().out
     for option in ("--filter.interval", "--filter.model.gyro-bias-deg-per-h", "--aiding-format.velocity-unit"):
         assert option in printed
+
+
+@pytest.mark.parametrize("name", ["bias-augmented", "double-filter", "velocity-change", "velocity-error"])
+def test_every_option_of_velocity_and_filter_is_explained(name, capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    with pytest.raises(SystemExit, match="0"):
+        main(["solve", "--format", "kf-gins", "--filter", name, "--aiding", "log.csv", "--help"])
+    lines = [line.strip("│ ") for line in capsys.readouterr().out.splitlines()]
+    options = [k for k, line in enumerate(lines) if re.match(r"--(aiding-format|filter|format)\.", line)]
+    assert len(options) > 25
+    # The text stands in the line below, or behind two spaces.
+    bare = [lines[k] for k in options if "  " not in lines[k] and lines[k + 1].startswith(("(", "--"))]
+    assert bare == []
+
+
+def test_the_hint_says_how_to_see_the_options_of_the_velocity(capsys):
+    with pytest.raises(SystemExit, match="0"):
+        main(["solve", "--help"])
+    assert "--aiding FILE --filter NAME --help` shows the options" in " ".join(capsys.readouterr().out.split())
 
 
 def test_every_noise_has_an_option():

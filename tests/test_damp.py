@@ -3,6 +3,8 @@
 Truth: it stands; what is estimated is compared with what was put in.
 """
 
+import re
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -10,9 +12,12 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import bench
+from bench._damp_report import damping_figures
+from bench._solve_report import state_table
 from bench.aiding import VelocityAiding
 from bench.damp import damp
-from bench.errors import InputError
+from bench.errors import BenchWarning, InputError
+from bench.record._filter_traces import filter_plots
 from bench.recording import Recording
 from bench.rotation import quat_from_rotvec, quat_multiply, quat_normalize
 from bench.solve import Solution, solve_recording
@@ -38,7 +43,7 @@ def solution() -> Solution:
     return solve_recording(made, INS, wrong, reference=truth(START + np.arange(0, DURATION + 1, 10)))
 
 
-def still(**options: float) -> VelocityAiding:
+def still(**options: object) -> VelocityAiding:
     """A log that says that the unit stands, with white noise of 1 cm/s, from 2.5 s on."""
     t = START + 2.5 + np.arange(DURATION)
     return VelocityAiding(t, np.random.default_rng(5).normal(0, 0.01, (len(t), 2)), **options)
@@ -112,8 +117,85 @@ def test_outliers_are_counted(solution):
     gated = damp(solution, aiding, bench.solver("damping", "velocity-error", model=MODEL, gate=0.9999))
     stage = gated.stages["velocity-error"]
     assert gated.rejected(stage) == 2  # the steps on either side of the row
-    plain = damp(solution, aiding, bench.solver("damping", "velocity-error", model=MODEL))
+    with pytest.warns(BenchWarning, match="mean NIS of velocity-error"):
+        plain = damp(solution, aiding, bench.solver("damping", "velocity-error", model=MODEL))
     assert plain.rejected(plain.stages["velocity-error"]) == 0
+
+
+def doubts(solution, aiding, **options) -> list[str]:
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        damp(solution, aiding, bench.solver("damping", "velocity-error", model=MODEL, **options))
+    assert all(issubclass(each.category, BenchWarning) for each in caught)
+    return [str(each.message) for each in caught]
+
+
+def test_too_little_velocity_is_doubtful(solution):
+    """Milliseconds declared as seconds leave a row or two; half of the steps is the limit."""
+    log = still(source="log.csv")
+    sparse = VelocityAiding(START + (log.t - START) * 1e3 - 2000.0, log.v_en, source="log.csv")
+    (doubt,) = doubts(solution, sparse)
+    assert doubt.startswith("log.csv: a velocity was available at 1 of 1201 steps only; check its time unit, clock")
+    for end, expected in ((601, []), (599, ["599 of 1201 steps only"])):
+        t = START + np.arange(float(end))
+        found = doubts(solution, VelocityAiding(t, np.zeros((end, 2))))
+        assert [text in doubt for text, doubt in zip(expected, found, strict=True)] == [True] * len(expected)
+
+
+def test_a_velocity_that_does_not_fit_is_doubtful(solution):
+    """2 m/s that are not there are 200 sigma of the log; with a gate hardly anything passes."""
+    log = still(source="log.csv")
+    assert doubts(solution, log) == []
+    wrong = VelocityAiding(
+        log.t, log.v_en + np.where(np.arange(len(log)) % 20 < 10, 2.0, 0.0)[:, None], source="log.csv"
+    )
+    (doubt,) = doubts(solution, wrong)
+    assert re.match(
+        r"log\.csv: the mean NIS of velocity-error is \S+, 2 is expected; check the velocity's unit, axes", doubt
+    )
+    (doubt,) = doubts(solution, VelocityAiding(log.t, log.v_en + 30.0, source="log.csv"), gate=0.999)
+    assert doubt.startswith("log.csv: 1198 of 1198 measurements did not pass the gate of velocity-error; check the")
+
+
+def test_a_constant_that_the_filter_takes_for_errors_of_the_ins_is_doubtful_at_once(solution):
+    """5 m/s are 50 sigma of the first innovation, and soon an error of the velocity like any other."""
+    log = still(source="log.csv")
+    shifted = VelocityAiding(log.t, log.v_en + np.array([5.0, 0.0]), source="log.csv")
+    (doubt,) = doubts(solution, shifted)
+    assert doubt.startswith("log.csv: the first velocity is 4.9")  # less the slip
+
+
+def test_the_damped_state_at_the_end_is_shown_beside_the_free_one(solution):
+    damped = damp(solution, still(), bench.solver("damping", "velocity-error", model=MODEL))
+    table = state_table(solution, damped)
+    free_title, title = "end by navigation-frame, free", "end by velocity-error, damped"
+    assert list(table.columns) == ["quantity", "start", free_title, title]
+    row = list(table["quantity"]).index("velocity north, m/s")
+    assert float(table[free_title][row]) == pytest.approx(solution.trajectory.v_n[-1, 1], abs=1e-5)
+    assert float(table[title][row]) == pytest.approx(damped.trajectory.v_n[-1, 1], abs=1e-5)
+    assert abs(float(table[title][row])) < 0.02 < abs(float(table[free_title][row]))  # it stands
+    assert list(state_table(solution).columns) == ["quantity", "start", "end"]
+
+
+def test_the_normalised_innovations_are_drawn_on_a_logarithmic_axis(solution):
+    damped = damp(solution, still(), bench.solver("damping", "double-filter", model=MODEL))
+    _, innovations = damping_figures(damped)
+    assert [panel.yscale for panel in innovations.panels] == ["log", "log", "linear"]
+
+
+def test_plots_of_the_filter_hold_the_largest_innovation_and_name_their_lines(solution):
+    log = still()
+    v_en = log.v_en.copy()
+    v_en[401] += 0.5
+    damped = damp(solution, VelocityAiding(log.t, v_en), bench.solver("damping", "double-filter", model=MODEL))
+    plots = {plot.overview.entity: plot.overview for plot in filter_plots(damped, START)["Filter"]}
+    first = plots["filter/nis_velocity-error"]
+    largest = np.nanmax(damped.stages["velocity-error"].nis)
+    assert largest > 100
+    assert first.display_range()[1] == np.ceil(np.log10(largest))
+    assert plots["filter/share/0"].series == ("latitude", "longitude")
+    shares = [name for entity, plot in plots.items() if "/share/" in entity for name in plot.series]
+    assert len(shares) == 13
 
 
 def test_stages_have_the_names_of_the_filters(solution):

@@ -8,11 +8,11 @@ import pytest
 
 import bench
 from bench.earth import WGS84
-from bench.error_simulation import disturbed, reference_velocity
+from bench.error_simulation import ErrorSimulation, disturbed, reference_velocity
 from bench.errors import AccuracyError, InputError
 from bench.references import Source
 from bench.solvers import solvers
-from bench.solvers.damping import DampingModel, InsSamples
+from bench.solvers.damping import DampingModel, InsSamples, error_states
 from tests.damping_cases import KNOWN, ship
 
 NAMES = sorted(solvers("damping"))
@@ -150,6 +150,18 @@ def test_input_is_not_written_to(damping):
         (lambda f: dataclasses.replace(f, gate=1.0), "gate must be a probability"),
         (lambda f: dataclasses.replace(f, covariance_every=-1), "covariance_every must be an integer >= 0"),
         (lambda f: dataclasses.replace(f, model="good"), "model must be a DampingModel"),
+        (lambda f: f.advance(f.start(), TRUTH.trajectory(), V_REF), "ins must be InsSamples, got Trajectory$"),
+        (lambda f: f.advance(3, INS, V_REF), "state must come from start or advance of .*, got int$"),
+        (lambda f: f.solve(TRUTH.trajectory(), V_REF), "ins must be InsSamples of at least 2 rows, got Trajectory$"),
+        (
+            lambda f: dataclasses.replace(f, model=DampingModel(tau_g=15.0)).start(2.0),
+            "tau_g must be at least 10 steps of the filter, 20 s at steps of 2 s, got 15 s",
+        ),
+        (
+            lambda f: dataclasses.replace(f, model=DampingModel(tau_f=1.0)).solve(INS, V_REF),
+            "tau_f must be at least 10 steps of the filter, 10 s at steps of 1 s, got 1 s",
+        ),
+        (lambda f: f.solve(INS, V_REF).corrected(3), "ins must be an InsSamples, got 3"),
         (lambda f: f.solve(INS, V_REF).corrected(INS[:5]), "ins must have the times of the solution"),
     ],
 )
@@ -187,6 +199,26 @@ def test_bad_options(name, options, message):
 def test_the_interval_is_a_whole_number_of_samples(name):
     with pytest.raises(InputError, match=r"interval must be a whole number of samples of 2 s, got 5\.0"):
         bench.solver("damping", name).start(2.0)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: InsSamples.of(3), "trajectory must be a Trajectory, got 3"),
+        (lambda: InsSamples.of(TRUTH.trajectory(), 3), "previous must be an InsSamples, got 3"),
+        (lambda: InsSamples.joined(TRUTH, 3), r"parts\[1\] must be an InsSamples, got 3"),
+        (lambda: dataclasses.replace(TRUTH, earth="wgs84"), "earth must be an Earth, got 'wgs84'"),
+        (lambda: error_states(3, TRUTH.trajectory()), "ins must be an InsSamples or a Trajectory, got 3"),
+        (lambda: error_states(INS, INS), "truth must be a Trajectory, got InsSamples"),
+        (lambda: disturbed(3, np.zeros((1, 13))), "truth must be an InsSamples, got 3"),
+        (lambda: reference_velocity(3, noise=0.1, seed=1), "truth must be an InsSamples, got 3"),
+        (lambda: ErrorSimulation().advance(3, TRUTH), "state must be a SimulationState, got 3"),
+        (lambda: ErrorSimulation().advance(ErrorSimulation().start(), 3), "truth must be an InsSamples, got 3"),
+    ],
+)
+def test_wrong_types_are_named(call, message):
+    with pytest.raises(InputError, match=message):
+        call()
 
 
 def test_readings_of_q():

@@ -46,8 +46,10 @@ class Format(ABC):
         Gaps up to this long are filled by linear interpolation; 0 refuses every gap.
     drop_repeats : bool
         Drop rows that are the same as the row before, time and values.
-    start, stop : float, s, optional
-        Read only rows with start <= t <= stop, t as in the recording.
+    start : float, s, optional
+        Read only rows with t >= start, s, t as in the recording.
+    stop : float, s, optional
+        Read only rows with t <= stop, s, t as in the recording.
     range_check : bool
         Refuse values that suggest another unit: rates above 100 rad/s, or a median specific force below 1.5 or above
         500 m/s^2.

@@ -2,14 +2,22 @@
 
 import numpy as np
 
+from bench._damp_report import HIGH
 from bench._damping_states import SHOWN
 from bench.damp import Damped
-from bench.errors import Array
+from bench.errors import Array, Indices
 from bench.record._navigation_traces import OVERVIEW, TimedPlot
-from bench.record.traces import ESTIMATE_COLOURS, TRUTH_COLOUR, Colour, Trace
+from bench.record.traces import AXIS_COLOURS, ESTIMATE_COLOURS, FLOOR, TRUTH_COLOUR, Colour, Trace
 
 BAND: Colour = (110, 150, 190)
 ESTIMATED, WEIGHT = ESTIMATE_COLOURS[1], ESTIMATE_COLOURS[0]  # of the filter, which is the second estimate
+SHARES = {  # columns of the weights, by title and name
+    "position": {"latitude": 2, "longitude": 3},
+    "velocity": {"east": 0, "north": 1},
+    "attitude": {"phi_E": 4, "phi_N": 5, "phi_U": 6},
+    "accelerometer errors": {"nabla_x": 7, "nabla_y": 8, "nabla_z": 9},
+    "gyro errors": {"eps_x": 10, "eps_y": 11, "eps_z": 12},
+}
 
 Line = tuple[str, Colour, Array, Array]  # name, colour, times and values
 
@@ -34,8 +42,10 @@ def _innovations(damped: Damped, start: float) -> list[TimedPlot]:
     for name, stage in damped.stages.items():
         rows = np.isfinite(stage.nis)
         if rows.any():
-            line = ("NIS", ESTIMATED, stage.t[rows] - start, stage.nis[rows])
-            plots.append(_plot(f"filter/nis_{name}", f"Normalised innovation squared of {name}, 2 expected", [line]))
+            t, nis = stage.t[rows] - start, np.log10(np.maximum(stage.nis[rows], FLOOR))
+            lines = [("NIS", ESTIMATED, t, nis), ("99 %", TRUTH_COLOUR, t, np.full(len(t), np.log10(HIGH)))]
+            title = f"log10 of the normalised innovation squared of {name}"
+            plots.append(_plot(f"filter/nis_{name}", title, lines, logarithmic=True))
     return plots
 
 
@@ -43,20 +53,28 @@ def _weights(damped: Damped, t: Array) -> list[TimedPlot]:
     made = damped.estimate
     if made.gamma is None or made.weight is None:
         return []
-    colours = [ESTIMATE_COLOURS[k % len(ESTIMATE_COLOURS)] for k in range(len(made.states))]
-    shares = [(name, colours[k], t, made.weight[:, k]) for k, name in enumerate(made.states)]
-    return [
-        _plot("filter/gamma", "Gamma, distrust in velocity-error", [("gamma", WEIGHT, t, made.gamma)]),
-        _plot("filter/share", "Share of velocity-error in each fused state", shares),
-    ]
+    plots = [_plot("filter/gamma", "Gamma, distrust in velocity-error", [("gamma", WEIGHT, t, made.gamma)])]
+    for k, (title, columns) in enumerate(SHARES.items()):
+        values = made.weight[:, list(columns.values())]
+        colours = AXIS_COLOURS[: len(columns)]
+        trace = Trace(f"filter/share/{k}", f"Share of velocity-error: {title}", tuple(columns), colours, values)
+        plots.append(TimedPlot(trace, ((t, trace),)))
+    return plots
 
 
-def _plot(entity: str, title: str, lines: list[Line]) -> TimedPlot:
-    few = [values[np.linspace(0, len(values) - 1, OVERVIEW).astype(int)] for *_, values in lines]
+def _plot(entity: str, title: str, lines: list[Line], *, logarithmic: bool = False) -> TimedPlot:
+    few = [values[_overview(values)] for *_, values in lines]
     names, colours = tuple(name for name, *_ in lines), tuple(colour for _, colour, *_ in lines)
-    overview = Trace(entity, title, names, colours, np.stack(few, axis=1))
+    overview = Trace(entity, title, names, colours, np.stack(few, axis=1), logarithmic)
     traces = (
-        (t, Trace(f"{entity}/{k}", title, (name,), (colour,), values[:, None]))
+        (t, Trace(f"{entity}/{k}", title, (name,), (colour,), values[:, None], logarithmic))
         for k, (name, colour, t, values) in enumerate(lines)
     )
     return TimedPlot(overview, tuple(traces))
+
+
+def _overview(values: Array) -> Indices:
+    """Return a few rows, and among them the largest, which the range of a logarithmic plot must hold."""
+    rows = np.linspace(0, len(values) - 1, OVERVIEW).astype(np.intp)
+    rows[OVERVIEW // 2] = np.argmax(values)
+    return rows

@@ -146,8 +146,13 @@ def _blueprint(
 
     def views(page: str, first: int = 0) -> list[rrb.TimeSeriesView]:
         # A little beyond the end, where the time cursor stands.
-        span = start, end + 0.02 * (end - start)
-        return [time_series(p.overview, legend=k == 0, span=span) for k, p in enumerate(pages[page][first:])]
+        span, plots = (start, end + 0.02 * (end - start)), pages[page][first:]
+        # One legend a page, and one more where lines are not those of its first plot.
+        named = set(plots[0].overview.series)
+        return [
+            time_series(p.overview, legend=k == 0 or not named.issuperset(p.overview.series), span=span)
+            for k, p in enumerate(plots)
+        ]
 
     beside = views("Errors") if "Errors" in pages else views("Motion", 0 if run.attitude_only else 6)
     side = rrb.Vertical(tracks.attitude_view(), *beside, row_shares=[1.6, *([1] * len(beside))])

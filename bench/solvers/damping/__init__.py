@@ -2,11 +2,17 @@
 
 The INS runs free (output correction): a navigation solver with ``height="held"``, sampled once a second. A filter
 takes those samples and the external reference velocity, and estimates the errors of the INS in 13 states (15 with the
-error of the reference)::
+error of the reference).
 
-    ins = InsSamples.of(trajectory)                        # of the free INS, every second
-    solution = bench.solver("damping", "double-filter").solve(ins, v_ref)
-    damped = solution.corrected(ins)                       # a Trajectory
+For a recording that `bench.solve.solve_recording` solved, `bench.damp.damp` does it all: samples, external velocity at
+their times, filter, and the corrected trajectory at all times of the solution. For a Trajectory of one's own, take a
+row about every second (`bench.interpolation.sampled`; all rows of a solution at 100 Hz cost a hundred times as much for
+nothing)::
+
+    t = np.arange(trajectory.t[0], trajectory.t[-1], 1.0)
+    ins = InsSamples.of(sampled(trajectory, t))            # of the free INS, every second
+    solution = bench.solver("damping", "double-filter").solve(ins, v_ref)  # v_ref (len(t), 2), m/s, east and north
+    damped = solution.corrected(ins)                       # a Trajectory, every second
 """
 
 from abc import ABC, abstractmethod
@@ -31,6 +37,9 @@ from bench.solvers.damping._samples import STEP_TOLERANCE, InsSamples, error_sta
 from bench.solvers.damping._solution import STATES, DampingSolution
 
 __all__ = ["STATES", "DampingFilter", "DampingModel", "DampingSolution", "DampingState", "InsSamples", "error_states"]
+
+LONGEST_STEP = 20.0  # s; see bench.solvers.damping.error_model for what the series lacks
+STEPS_PER_TAU = 10  # at least, for the same reason
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,10 +78,11 @@ class DampingFilter(ABC):
     model : DampingModel
         What the filter believes of errors and noises.
     gate : float or None
-        Probability with which a measurement that obeys the model is used; one whose innovation is too large (chi-square
-        of 2 degrees) is left out. None uses all.
+        Probability, between 0 and 1 such as 0.999, with which a measurement that obeys the model is used; one whose
+        innovation is too large (chi-square of 2 degrees) is left out. None uses all.
     covariance_every : int
-        Full covariances are kept at rows 0, k, 2 k, ... of the run; 0 keeps none.
+        Keep the full covariance at every so many-th sample, beginning with the first, in the solution in Python
+        (tables have the standard deviations); 0 keeps none.
 
     Raises
     ------
@@ -122,12 +132,18 @@ class DampingFilter(ABC):
         Raises
         ------
         InputError
-            If dt is not positive or too long.
+            If dt is not positive or longer than 20 s, or a correlation time is shorter than ten steps.
         """
         dt = require_scalar("dt", dt, positive=True)
-        limit = min(20.0, 0.1 * self.model.tau_f, 0.1 * self.model.tau_g)
-        if dt > limit:
-            raise InputError(f"dt must be at most {limit:g} s (20 s and a tenth of tau_f and tau_g), got {dt!r}")
+        if dt > LONGEST_STEP:
+            raise InputError(f"dt must be at most {LONGEST_STEP:g} s, got {dt!r}")
+        for name in ("tau_f", "tau_g"):
+            tau = getattr(self.model, name)
+            if tau < STEPS_PER_TAU * dt:
+                raise InputError(
+                    f"{name} must be at least {STEPS_PER_TAU} steps of the filter, {STEPS_PER_TAU * dt:g} s at steps "
+                    f"of {dt:g} s, got {tau:g} s"
+                )
         return DampingState(self, dt, 0, None, self._start(dt))
 
     @final
@@ -151,9 +167,10 @@ class DampingFilter(ABC):
         """
         if not isinstance(state, DampingState) or state.filter != self:
             owner = getattr(state, "filter", state)
-            raise InputError(f"state must come from start or advance of {self!r}, got that of {owner!r}")
+            got = f"that of {owner!r}" if isinstance(owner, DampingFilter) else type(owner).__name__
+            raise InputError(f"state must come from start or advance of {self!r}, got {got}")
         if not isinstance(ins, InsSamples):
-            raise InputError(f"ins must be InsSamples, got {ins!r}")
+            raise InputError(f"ins must be InsSamples, got {type(ins).__name__}")
         _check_times(state, ins)
         v_ref = require_array("v_ref", v_ref, (len(ins), 2), finite=False)
         if np.isinf(v_ref).any() or (np.isnan(v_ref[:, 0]) != np.isnan(v_ref[:, 1])).any():
@@ -175,7 +192,8 @@ class DampingFilter(ABC):
             As `start` and `advance`; also if there is one sample only.
         """
         if not isinstance(ins, InsSamples) or len(ins) < 2:
-            raise InputError(f"ins must be InsSamples of at least 2 rows, got {ins!r}")
+            got = f"{len(ins)} row" if isinstance(ins, InsSamples) else type(ins).__name__
+            raise InputError(f"ins must be InsSamples of at least 2 rows, got {got}")
         dt = float(ins.t[-1] - ins.t[0]) / (len(ins) - 1)
         return self.advance(self.start(dt), ins, v_ref)[1]
 

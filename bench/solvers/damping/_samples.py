@@ -7,7 +7,7 @@ from typing import Optional
 import numpy as np
 
 from bench.earth import Earth
-from bench.errors import Array, InputError, require_array, require_times, require_unit_quaternion
+from bench.errors import Array, InputError, require_array, require_instance, require_times, require_unit_quaternion
 from bench.rotation import cross, quat_conjugate, quat_multiply, rotvec_from_quat, wrap
 from bench.trajectory import Trajectory
 
@@ -46,6 +46,7 @@ class InsSamples:
     f_n: Array
 
     def __post_init__(self) -> None:
+        require_instance("earth", self.earth, Earth)
         t = require_times("t", self.t)
         _require_equal_steps(t)
         rows: dict[str, tuple[int, ...]] = {"v_n": (3,), "latitude": (), "longitude": (), "height": (), "f_n": (3,)}
@@ -71,6 +72,7 @@ class InsSamples:
         Parameters
         ----------
         trajectory : Trajectory
+            A row about every second; `bench.interpolation.sampled` thins a denser one.
         previous : InsSamples, optional
             The chunk before. Without one the first row, whose interval no filter uses, has the specific force of a
             constant velocity.
@@ -78,8 +80,12 @@ class InsSamples:
         Raises
         ------
         InputError
-            If the times are not equally spaced, or do not follow those of `previous`.
+            If an argument is of another class, or the times are not equally spaced or do not follow those of
+            `previous`.
         """
+        require_instance("trajectory", trajectory, Trajectory)
+        if previous is not None:
+            require_instance("previous", previous, InsSamples)
         earth, t = trajectory.earth, trajectory.t
         v, L, times = trajectory.v_n, trajectory.latitude, t
         if previous is not None:
@@ -103,8 +109,10 @@ class InsSamples:
         Raises
         ------
         InputError
-            If there are none, their Earths differ, or the times are not equally spaced.
+            If there are none, one is none, their Earths differ, or the times are not equally spaced.
         """
+        for k, part in enumerate(parts):
+            require_instance(f"parts[{k}]", part, InsSamples)
         if not parts or any(part.earth != parts[0].earth for part in parts):
             raise InputError(f"parts must be samples of one Earth, got {len(parts)}")
         names = [field.name for field in fields(cls)[1:]]
@@ -126,8 +134,10 @@ def error_states(ins: InsSamples | Trajectory, truth: Trajectory) -> Array:
     Raises
     ------
     InputError
-        If the lengths differ or the times differ by more than 1e-6 s.
+        If an argument is of another class, the lengths differ, or the times differ by more than 1e-6 s.
     """
+    require_instance("ins", ins, (InsSamples, Trajectory))
+    require_instance("truth", truth, Trajectory)
     if len(ins) != len(truth) or np.abs(ins.t - truth.t).max() > STEP_TOLERANCE:
         raise InputError(f"ins and truth must have the same times, got {len(ins)} and {len(truth)} rows")
     phi = -rotvec_from_quat(quat_multiply(ins.q_nb, quat_conjugate(truth.q_nb)))

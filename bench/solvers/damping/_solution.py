@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from bench.errors import Array, Indices, InputError
+from bench.errors import Array, Indices, InputError, require_instance
 from bench.rotation import quat_from_rotvec, quat_multiply, quat_normalize
 from bench.solvers.damping._samples import STEP_TOLERANCE, InsSamples
 from bench.trajectory import Trajectory
@@ -95,8 +95,9 @@ class DampingSolution:
         Raises
         ------
         InputError
-            If `ins` has other times.
+            If `ins` is of another class or has other times.
         """
+        require_instance("ins", ins, InsSamples)
         if len(ins) != len(self) or np.abs(ins.t - self.t).max() > STEP_TOLERANCE:
             raise InputError(f"ins must have the times of the solution ({len(self)} rows), got {len(ins)} rows")
         v_n = ins.v_n.copy()

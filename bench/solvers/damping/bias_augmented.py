@@ -21,9 +21,9 @@ class BiasAugmented(DampingFilter):
     Parameters
     ----------
     reference_bias : float, m/s
-        Standard deviation of the reference's error, east and north.
+        Standard deviation of the error of the reference velocity, east and north, m/s.
     reference_tau : float, s
-        Its correlation time; infinite for a constant.
+        Correlation time of that error, s; infinite for a constant.
     model : DampingModel
     gate : float or None
     covariance_every : int

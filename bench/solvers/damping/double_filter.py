@@ -38,15 +38,23 @@ class DoubleFilter(DampingFilter):
 
     Parameters
     ----------
-    interval, change_noise, r2_reading
-        Of filter 2, see `velocity-change`.
+    interval : float, s
+        T over which filter 2 takes the change of the velocity error: 1 to 15 s, a whole number of samples.
+    change_noise : float, m/s^2 or m/s
+        Noise of that change, m/s^2 or m/s: R2 is made of it as `r2_reading` says.
+    r2_reading : {"acceleration", "velocity"}
+        "acceleration" takes `change_noise` as m/s^2; "velocity" takes it as m/s, the noise of each of the two
+        velocities whose difference is taken. See `velocity-change`.
     gamma_rate : float, 1/s
-        a.
-    gamma_start, gamma_delay : float, s
-        t0 and tm; t counts from the start of the run.
+        a, 1/s: how steeply the distrust in filter 1 grows about its middle.
+    gamma_start : float, s
+        t0, s since the start of the run; the distrust is half of its final one at t0 + tm.
+    gamma_delay : float, s
+        tm, s, counted from t0.
     mean : {"cumulative", "window"}
-        Whether Xbar is the mean since the start, or over the last `window` seconds.
+        "cumulative" takes Xbar as the mean since the start, "window" as that over the last `window` seconds.
     window : float, s
+        Length of that window, s; of no effect if `mean` is "cumulative".
     model : DampingModel
     gate : float or None
     covariance_every : int

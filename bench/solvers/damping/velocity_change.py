@@ -23,12 +23,12 @@ class VelocityChange(DampingFilter):
     Parameters
     ----------
     interval : float, s
-        T, 1 to 15 s, a whole number of samples.
+        T over which it takes the change of the velocity error: 1 to 15 s, a whole number of samples.
     change_noise : float, m/s^2 or m/s
-        R2 is made of it as `r2_reading` says.
+        Noise of that change, m/s^2 or m/s: R2 is made of it as `r2_reading` says.
     r2_reading : {"acceleration", "velocity"}
-        R2 is printed in (m/s)^2, but Z is an acceleration: "acceleration" takes the number as m/s^2; "velocity" takes
-        it as the noise of each of the two velocities, R2 = 2 change_noise^2/T^2.
+        R2 is printed in (m/s)^2, but Z is an acceleration: "acceleration" takes `change_noise` as m/s^2;
+        "velocity" takes it as m/s, the noise of each of the two velocities, R2 = 2 change_noise^2/T^2.
     model : DampingModel
     gate : float or None
     covariance_every : int
