@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal, get_type_hints
 
 import tyro
 
+from bench._cli_help import own_entries
 from bench._cli_types import REGISTRY
 from bench.earth import WGS84, Earth
 from bench.errors import Array, InputError, UnknownNameError, require_choice
@@ -159,6 +160,7 @@ def _parse(
     flat = tyro.conf.arg(name="")
     members: list[Any] = [("common", Annotated[common, flat])]
     for name, (cls, prefixed) in parts.items():
+        cls.__doc__ = own_entries(cls.__doc__ or "")
         members.append((name, Annotated[cls, tyro.conf.arg(name=name if prefixed else "")]))
     parsed: Any = tyro.cli(
         make_dataclass("Command", members, frozen=True),
