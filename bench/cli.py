@@ -6,6 +6,7 @@ Exit codes: 0 done, 2 bad input, 1 failed.
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, field, make_dataclass
+from importlib.metadata import version
 from io import TextIOWrapper
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -138,6 +139,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):  # a folder's name must not stop a run in a plain locale
             stream.reconfigure(errors="backslashreplace")
+    if arguments == ["--version"]:
+        print(f"strapbench {version('strapbench')}")
+        return 0
     try:
         command = _parse(arguments)
         command()

@@ -9,6 +9,7 @@ import time
 
 import pytest
 
+import bench
 from bench.cli import main
 
 
@@ -21,6 +22,11 @@ def test_list_names_everything(capsys):
     ):
         assert f"\n  {name} " in printed
     assert all(len(line) < 130 for line in printed.splitlines())
+
+
+def test_version(capsys):
+    assert main(["--version"]) == 0
+    assert capsys.readouterr().out == f"strapbench {bench.__version__}\n"
 
 
 def test_run_prints_the_table_and_the_places(capsys, tmp_path):
