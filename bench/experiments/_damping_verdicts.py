@@ -33,9 +33,9 @@ ENOUGH = 10  # trials
 
 def withheld(options: Options, verdicts: dict[str, Verdict]) -> dict[str, Verdict]:
     """Return the verdicts, but those that a run at other conditions cannot judge."""
-    reasons = {"8 ": not_the_rest(options), "7 ": not_the_trials(options)}
-    reasons |= dict.fromkeys(("5 fifteen states, over trials", "6 "), not_the_trials(options) or not_the_paper(options))
-    default = not_the_paper(options)
+    reasons = {"8 ": why_not_periods(options), "7 ": why_not_trials(options)}
+    reasons |= dict.fromkeys(("5 fifteen states, over trials", "6 "), why_not_trials(options) or why_not_paper(options))
+    default = why_not_paper(options)
     found: dict[str, Verdict] = {}
     for key, verdict in verdicts.items():
         reason = next((why for start, why in reasons.items() if key.startswith(start)), default)
@@ -43,24 +43,22 @@ def withheld(options: Options, verdicts: dict[str, Verdict]) -> dict[str, Verdic
     return found
 
 
-def not_the_rest(options: Options) -> str:
+def why_not_periods(options: Options) -> str:
     """Return why the periods of the undamped INS cannot be judged, or nothing."""
     least = Options().undamped
-    return (
-        f"{options.undamped:g} h undamped are too short, at least {least:g} h are needed"
-        if options.undamped < least
-        else ""
-    )
+    if options.undamped < least:
+        return f"{options.undamped:g} h undamped are too short, at least {least:g} h are needed"
+    return ""
 
 
-def not_the_trials(options: Options) -> str:
+def why_not_trials(options: Options) -> str:
     """Return why consistency cannot be judged, or nothing."""
     if options.duration < LONGEST:
         return f"{options.duration:g} h are too short, at least {LONGEST:g} h are needed"
     return f"{options.trials} trials are too few, at least {ENOUGH} are needed" if options.trials < ENOUGH else ""
 
 
-def not_the_paper(options: Options) -> str:
+def why_not_paper(options: Options) -> str:
     """Return why the paper's claims cannot be judged, or nothing."""
     default = Options()
     if options.reference_errors != REFERENCE_ERRORS:
