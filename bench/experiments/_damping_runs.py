@@ -209,10 +209,6 @@ def _rows_of(work: Work, damped: Damped, name: str, rows: Indices) -> Table:
     more: dict[str, Any] = {}
     if solution.weight is not None and solution.gamma is not None:
         more = {**_states(WEIGHTS, solution.weight[rows]), "gamma": solution.gamma[rows]}
-    # The fusion has no innovation of its own.
-    measured = rows if not np.isnan(solution.nis).all() else rows[:0]
-    nis = np.full(len(rows), np.nan)
-    nis[: len(measured)] = solution.nis[measured]
     return make_rows(
         len(rows),
         part=work.part,
@@ -220,7 +216,7 @@ def _rows_of(work: Work, damped: Damped, name: str, rows: Indices) -> Table:
         t_h=solution.t[rows] / HOUR,
         reference_m_per_s=constant,
         nees=nees(errors, solution.covariance) if len(rows) else np.empty(0),
-        nis=nis,
+        nis=solution.nis[rows],
         **_states(ERRORS, errors),
         **_states(SIGMAS, solution.sigma[rows]),
         **more,
