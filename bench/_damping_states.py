@@ -29,3 +29,11 @@ SHOWN = (
         for k, name in (("E", "east"), ("N", "north"))
     ),
 )
+
+SHARES = {  # of the fusion: states by group and name
+    "position": {"latitude": 2, "longitude": 3},
+    "velocity": {"east": 0, "north": 1},
+    "attitude": {"phi_E": 4, "phi_N": 5, "phi_U": 6},
+    "accelerometer errors": {"nabla_x": 7, "nabla_y": 8, "nabla_z": 9},
+    "gyro errors": {"eps_x": 10, "eps_y": 11, "eps_z": 12},
+}

@@ -90,6 +90,13 @@ def configuration_markdown(outcome: Outcome, shown: str) -> str:
     return "\n\n".join(parts)
 
 
+def figure_files(outcome: Outcome, recording: Path) -> dict[str, Path]:
+    """Return the figures that were drawn beside a recording, by title."""
+    folder = recording.parent / "figures"
+    drawn = {figure.title: folder / f"{figure.name}.png" for figure in outcome.evaluation.figures}
+    return {title: file for title, file in drawn.items() if file.is_file()}
+
+
 def blocks(outcome: Outcome) -> list[Block]:
     """Return the report, independent of the format."""
     experiment = outcome.experiment

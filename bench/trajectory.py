@@ -99,6 +99,10 @@ class Trajectory:
         for name in ("v_e", "r_e"):
             object.__setattr__(self, name, require_array(name, getattr(self, name), (len(t), 3)))
 
+    def __getitem__(self, rows: slice) -> "Trajectory":
+        """Return some of the rows, such as ``trajectory[:100]``."""
+        return Trajectory(self.earth, self.t[rows], self.q_eb[rows], self.v_e[rows], self.r_e[rows])
+
     def __len__(self) -> int:
         return len(self.t)
 

@@ -52,9 +52,7 @@ def run():
     )
     solver = bench.solver("navigation", "navigation-frame", samples=2, height="held")
     estimate = solver.solve(dtheta, dvel, increments.dt, initial, SPHERE)
-    every = slice(None, None, round(RATE / 2))
-    columns = (getattr(estimate, name)[every] for name in ("t", "q_eb", "v_e", "r_e"))
-    ins = InsSamples.of(bench.Trajectory(SPHERE, *columns))
+    ins = InsSamples.of(estimate[:: round(RATE / 2)])
     return InsSamples.of(MOTION.trajectory(ins.t)), ins
 
 

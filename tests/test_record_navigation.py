@@ -61,7 +61,7 @@ def make_run(n: int = 2000, **options: object) -> NavigationRun:
     fast, slow = course(np.arange(n + 1) / 100), course(np.arange(n // 4 + 1) / 25)
     poor = with_errors(fast)
     some = slice(None, None, 10)
-    sampled = Trajectory(WGS84, poor.t[some], poor.q_eb[some], poor.v_e[some], poor.r_e[some])
+    sampled = poor[some]
     estimates = {
         GOOD: NavigationEstimate(slow, slow),
         POOR: NavigationEstimate(poor, course(poor.t[some]), sampled),

@@ -6,18 +6,7 @@ from bench.errors import Array
 from bench.experiment import Evaluation, Verdict
 from bench.experiments import _attitude_coning_figures as figures
 from bench.experiments._attitude_coning_trials import DURATION, RATES, Options
-from bench.experiments._attitude_judging import (
-    HALF,
-    Band,
-    Curve,
-    judge,
-    judge_phases,
-    orders,
-    printed_orders,
-    slope,
-    tally,
-    withhold,
-)
+from bench.experiments._attitude_judging import HALF, Band, Curve, judge, judge_phases, orders, printed_orders, slope
 from bench.experiments._attitude_trials import (
     ALL,
     ANGLES,
@@ -31,6 +20,7 @@ from bench.experiments._attitude_trials import (
     Algorithm,
     Errors,
 )
+from bench.experiments._judging import tally, withhold
 from bench.table import Table
 
 LOW_RATES = (100.0, 210.0)  # Hz, of claim 4

@@ -3,7 +3,6 @@
 import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -152,22 +151,3 @@ def slope(rates: Array, error: Array) -> float:
     if shown.sum() < 3:
         return float("nan")
     return float(np.polyfit(np.log10(rates[shown]), np.log10(error[shown]), 1)[0])
-
-
-def withhold(verdicts: dict[str, Verdict], reason: str) -> dict[str, Verdict]:
-    """Return the verdicts of a run that is not at the paper's conditions: none, with the measured values kept."""
-    if not reason:
-        return verdicts
-    return {key: Verdict("cannot be judged", verdict.measured, reason) for key, verdict in verdicts.items()}
-
-
-def tally(verdicts: dict[str, Verdict]) -> str:
-    """Return how many claims hold, in words."""
-    count: dict[str, Any] = {
-        word: sum(v.judgement == word for v in verdicts.values())
-        for word in ("holds", "does not hold", "cannot be judged")
-    }
-    return (
-        f"Of {len(verdicts)} claims {count['holds']} hold, {count['does not hold']} do not hold and "
-        f"{count['cannot be judged']} cannot be judged."
-    )

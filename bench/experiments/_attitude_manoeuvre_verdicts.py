@@ -5,9 +5,10 @@ import numpy as np
 from bench.errors import Array
 from bench.experiment import Evaluation, Verdict
 from bench.experiments import _attitude_manoeuvre_figures as figures
-from bench.experiments._attitude_judging import Band, Curve, judge, orders, printed_orders, tally, withhold
+from bench.experiments._attitude_judging import Band, Curve, judge, orders, printed_orders
 from bench.experiments._attitude_manoeuvre_trials import MOTION, PAPERS_TRUTH, RATE, TRUTH_RATE, Options
 from bench.experiments._attitude_trials import ALL, ANGLES, ENOUGH_PHASES, MEASURES, NEW, READINGS, Algorithm, Errors
+from bench.experiments._judging import tally, withhold
 from bench.table import Table
 from bench.units import ARCSEC
 

@@ -49,7 +49,7 @@ def _record(
     """Write a recording of runs: increments and what solves them, by what is added to the names."""
     from bench.mjcf import compile_model
     from bench.record.attitude import AttitudeEstimate, AttitudeRun, write_attitude_recording
-    from bench.report import configuration_markdown, results_markdown
+    from bench.report import configuration_markdown, figure_files, results_markdown
 
     estimates = {}
     for label, (dtheta_b, shown) in runs.items():
@@ -59,7 +59,6 @@ def _record(
             q = solve(algorithm, samples, dtheta_b, 1 / rate, q_true[0])
             estimates[f"{algorithm.label}, N = {samples}{label}"] = AttitudeEstimate(t, q, q_true)
     phase = f"; quantised: phase 0 of the quantiser, seed {outcome.seed}" if len(runs) > 1 else ""
-    drawn = {figure.title: path.parent / "figures" / f"{figure.name}.png" for figure in outcome.evaluation.figures}
     run = AttitudeRun(
         title=f"{outcome.experiment.name}, {rate:g} Hz",
         estimates=estimates,
@@ -67,6 +66,6 @@ def _record(
         results=results_markdown(outcome),
         parameters={"experiment": outcome.experiment.name, "seed": outcome.seed, "rate_hz": rate},
         model=compile_model("imu"),
-        figures={title: file for title, file in drawn.items() if file.is_file()},
+        figures=figure_files(outcome, path),
     )
     write_attitude_recording(path, run)

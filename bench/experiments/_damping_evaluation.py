@@ -4,7 +4,6 @@ import numpy as np
 
 from bench.evaluation import chi_square_bounds
 from bench.experiment import Evaluation, Verdict
-from bench.experiments._attitude_judging import tally
 from bench.experiments._damping_consistency import CASES, DRAWN
 from bench.experiments._damping_figures import figures
 from bench.experiments._damping_published import BOTH, COLUMNS, REFERENCE_ERRORS, TABLES, UNITS
@@ -13,6 +12,7 @@ from bench.experiments._damping_scan import BOTH_TABLES, readings_each, settings
 from bench.experiments._damping_trials import AUGMENTED, FILTERS, FIRST, FREE, FUSION, SECOND, Options, place
 from bench.experiments._damping_undamped import PERIODS, theory
 from bench.experiments._damping_verdicts import BANDS, hours, inside, judge_all, withheld
+from bench.experiments._judging import tally
 from bench.table import Table
 
 HEADS = tuple(f"{name}, {unit}" for name, unit in zip(COLUMNS, UNITS, strict=True))

@@ -15,7 +15,7 @@ from bench.units import DEG
 def record(outcome: Outcome, path: Path) -> None:
     """Write the recording from the rows of the run with the INS."""
     from bench.record.damping import DampingRun, Estimate, write_damping_recording
-    from bench.report import configuration_markdown, results_markdown
+    from bench.report import configuration_markdown, figure_files, results_markdown
 
     results: Results = outcome.evaluation.focus
     options = outcome.options
@@ -30,7 +30,6 @@ def record(outcome: Outcome, path: Path) -> None:
         return Estimate(errors, sigma, place + errors[:, 2:4] / DEG)
 
     fusion = found[FUSION]
-    drawn = {figure.title: path.parent / "figures" / f"{figure.name}.png" for figure in outcome.evaluation.figures}
     run = DampingRun(
         title=f"{outcome.experiment.name}, C = {options.focus:g} m/s",
         t=t,
@@ -42,7 +41,7 @@ def record(outcome: Outcome, path: Path) -> None:
         configuration=configuration_markdown(outcome, f"Shown: C = {options.focus:g} m/s."),
         results=results_markdown(outcome),
         parameters={"experiment": outcome.experiment.name, "seed": outcome.seed, "reference_error": options.focus},
-        figures={title: file for title, file in drawn.items() if file.is_file()},
+        figures=figure_files(outcome, path),
     )
     write_damping_recording(path, run)
 

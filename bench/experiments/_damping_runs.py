@@ -93,14 +93,10 @@ def free_ins(
         for name, sensor in sensors.items():
             states[name], read[name] = sensor.advance(states[name], getattr(increments, name))
         state, found = navigation.advance(state, read["dtheta_b"], read["dvel"])
-        parts.append(_rows(found, slice(step - 1, None, step)))
+        parts.append(found[step - 1 :: step])
         ins = InsSamples.of(_joined(parts), previous)
         parts, previous = [], ins[-2:]
         yield _samples(ins, motion, errors)
-
-
-def _rows(found: Trajectory, rows: slice) -> Trajectory:
-    return Trajectory(found.earth, found.t[rows], found.q_eb[rows], found.v_e[rows], found.r_e[rows])
 
 
 def _joined(parts: Sequence[Trajectory]) -> Trajectory:

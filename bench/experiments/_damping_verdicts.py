@@ -6,7 +6,6 @@ from numpy.typing import NDArray
 from bench.errors import Array
 from bench.evaluation import chi_square_bounds
 from bench.experiment import Verdict
-from bench.experiments._attitude_judging import withhold
 from bench.experiments._damping_consistency import CONSTANT_ERROR, DRAWN, LONGEST, PERFECT
 from bench.experiments._damping_published import (
     BOTH,
@@ -23,6 +22,7 @@ from bench.experiments._damping_results import ANGLES, LAST, PLACE, SPEED, Resul
 from bench.experiments._damping_scan import BOTH_TABLES
 from bench.experiments._damping_trials import AUGMENTED, FILTERS, FIRST, FUSION, SECOND, Options
 from bench.experiments._damping_undamped import PERIODS, theory
+from bench.experiments._judging import withhold
 
 BANDS = (0.1, 0.01)  # of the undamped error, within which an error must stay to have settled
 WITHIN = 0.1  # of the column's largest printed number: what counts as reproduced

@@ -6,7 +6,7 @@ import numpy as np
 
 from bench.errors import Array
 from bench.experiments._dual_euler_angles import EVERY, Judged
-from bench.experiments._dual_euler_runs import DUAL, QUATERNION, RATE, Felt, Work, felt, navigate, reported, rows_of
+from bench.experiments._dual_euler_runs import DUAL, QUATERNION, RATE, Felt, Work, felt, navigate, reported
 from bench.rotation import quat_conjugate, quat_from_rotvec, quat_multiply, quat_normalize, quat_rotate
 from bench.solvers.attitude import AttitudeSolver
 from bench.table import Table
@@ -39,7 +39,7 @@ def attitudes(fixed: Felt, name: str, increments: tuple[Array, Array], samples: 
     """
     rows = slice(None, None, EVERY // samples)
     if name in INS:
-        found = rows_of(navigate(fixed, INS[name], increments, samples), rows)
+        found = navigate(fixed, INS[name], increments, samples)[rows]
         return found.t, found.q_nb
     start, earth = fixed.motion.trajectory(np.zeros(1)), fixed.motion.earth
     q = attitude_solver(name, samples).solve(increments[0], 1 / RATE, start.q_nb[0])[rows]

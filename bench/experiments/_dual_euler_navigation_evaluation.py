@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from bench.errors import Array
 from bench.evaluation import percentile_of
 from bench.experiment import Evaluation, Verdict
-from bench.experiments._attitude_judging import tally, withhold
 from bench.experiments._dual_euler_judging import CERTAIN
 from bench.experiments._dual_euler_navigation_trials import (
     AXES,
@@ -26,6 +25,7 @@ from bench.experiments._dual_euler_navigation_trials import (
     Options,
 )
 from bench.experiments._dual_euler_runs import not_the_papers
+from bench.experiments._judging import tally, withhold
 from bench.figures import Figure, Line, Panel
 from bench.table import Table
 

@@ -16,7 +16,6 @@ from bench.experiments._dual_euler_runs import (
     felt,
     navigate,
     reported,
-    rows_of,
 )
 from bench.table import Table
 from bench.trajectory import navigation_errors
@@ -52,7 +51,7 @@ def position_errors(fixed: Felt, algorithm: Algorithm, increments: tuple[Array, 
     """Return times (n,), s, and errors east, north and in all (n, 3), m."""
     found = navigate(fixed, algorithm, increments)
     every = (len(found) - 1) // REPORTS
-    found = rows_of(found, slice(every, None, every))
+    found = found[every::every]
     error = navigation_errors(found, fixed.motion.trajectory(found.t)).position[:, :2]
     return found.t, np.column_stack([error, np.hypot(error[:, 0], error[:, 1])])
 

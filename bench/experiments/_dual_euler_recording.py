@@ -14,14 +14,13 @@ def record(outcome: Outcome, path: Path) -> None:
     """Write the recording of trial 0 with the stated IMU, in the last of the cases."""
     from bench.mjcf import compile_model
     from bench.record.dual_euler import DualEulerRun, write_dual_euler_recording
-    from bench.report import configuration_markdown, results_markdown
+    from bench.report import configuration_markdown, figure_files, results_markdown
 
     rows = outcome.rows.where(part="series", trial=0)
     case = str(rows["case"][-1])
     own = {name: rows.where(case=case, algorithm=name) for name in (DUAL_INS, QUATERNION_INS)}
     dual, quaternion = own[DUAL_INS], own[QUATERNION_INS]
     angles = {kind: DEG * np.stack([dual[f"{kind}_{name}_deg"] for name in NAMES], axis=1) for kind in SETS}
-    drawn = {figure.title: path.parent / "figures" / f"{figure.name}.png" for figure in outcome.evaluation.figures}
     shown = f"Shown: {case}, trial 0, seed {outcome.seed}, the stated IMU, pure inertial navigation."
     run = DualEulerRun(
         title=f"{outcome.experiment.name}, {case}",
@@ -35,6 +34,6 @@ def record(outcome: Outcome, path: Path) -> None:
         configuration=configuration_markdown(outcome, shown),
         results=results_markdown(outcome),
         parameters={"experiment": outcome.experiment.name, "seed": outcome.seed, "case": case, "trial": 0},
-        figures={title: file for title, file in drawn.items() if file.is_file()},
+        figures=figure_files(outcome, path),
     )
     write_dual_euler_recording(path, run)

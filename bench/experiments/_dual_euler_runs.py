@@ -188,11 +188,6 @@ def navigate(fixed: Felt, algorithm: Algorithm, increments: tuple[Array, Array],
     return algorithm.make(samples).solve(dtheta_b, dvel, 1 / RATE, motion.navigation_initial(), motion.earth)
 
 
-def rows_of(found: Trajectory, rows: "slice | Array") -> Trajectory:
-    """Return some rows of a trajectory."""
-    return Trajectory(found.earth, found.t[rows], found.q_eb[rows], found.v_e[rows], found.r_e[rows])
-
-
 def require_run(trials: int, duration: float) -> None:
     """Check the number of trials and the duration of an experiment.
 

@@ -7,7 +7,6 @@ import numpy as np
 from bench.campaign import Item
 from bench.experiment import Evaluation, Verdict
 from bench.experiments import _dual_euler_figures as figures
-from bench.experiments._attitude_judging import tally, withhold
 from bench.experiments._dual_euler_angle_trials import (
     DUAL_ALONE,
     DUAL_INS,
@@ -26,6 +25,7 @@ from bench.experiments._dual_euler_judging import (
     summary_table,
 )
 from bench.experiments._dual_euler_runs import DURATION, PERIOD, Swing, Work, cut, not_the_papers, require_run
+from bench.experiments._judging import tally, withhold
 from bench.table import Table
 
 BOUNDS = {"heading": 0.5, "pitch": 1.0, "roll": 0.6}  # arcmin, printed

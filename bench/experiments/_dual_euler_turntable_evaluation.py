@@ -4,7 +4,6 @@ import numpy as np
 
 from bench.experiment import Evaluation, Verdict
 from bench.experiments import _dual_euler_figures as figures
-from bench.experiments._attitude_judging import tally, withhold
 from bench.experiments._dual_euler_angle_trials import DUAL_INS
 from bench.experiments._dual_euler_angles import final
 from bench.experiments._dual_euler_judging import (
@@ -17,6 +16,7 @@ from bench.experiments._dual_euler_judging import (
     summary_table,
 )
 from bench.experiments._dual_euler_runs import RATES, TableOptions, not_the_papers
+from bench.experiments._judging import tally, withhold
 from bench.table import Table
 from bench.units import ARCMIN, DEG
 

@@ -2,7 +2,6 @@
 
 from bench.experiment import Evaluation, Verdict
 from bench.experiments import _ins_frames_cost as cost
-from bench.experiments._attitude_judging import tally, withhold
 from bench.experiments._ins_frames_figures import figures
 from bench.experiments._ins_frames_tables import tables
 from bench.experiments._ins_frames_trials import (
@@ -24,6 +23,7 @@ from bench.experiments._ins_frames_verdicts import (
     judge_cost,
     not_the_conditions,
 )
+from bench.experiments._judging import tally, withhold
 from bench.table import Table
 
 

@@ -22,7 +22,7 @@ from bench.experiments._ins_frames_trials import (
 def record(outcome: Outcome, path: Path) -> None:
     """Write the recording of one flight, at the middle one of the speeds."""
     from bench.record.navigation import NavigationEstimate, NavigationRun, write_navigation_recording
-    from bench.report import configuration_markdown, results_markdown
+    from bench.report import configuration_markdown, figure_files, results_markdown
 
     options = outcome.options
     flight = Flight(sorted(options.speeds)[len(options.speeds) // 2], HARSH, True)
@@ -32,7 +32,6 @@ def record(outcome: Outcome, path: Path) -> None:
         found = fly(flight, algorithm, options.rate, options.duration, samples)
         true = truth(flight, options.rate, len(found) - 1, samples)
         estimates[algorithm.label] = NavigationEstimate(found, true)
-    drawn = {figure.title: path.parent / "figures" / f"{figure.name}.png" for figure in outcome.evaluation.figures}
     run = NavigationRun(
         title=f"{outcome.experiment.name}, {flight.label}",
         estimates=estimates,
@@ -40,6 +39,6 @@ def record(outcome: Outcome, path: Path) -> None:
         configuration=configuration_markdown(outcome, f"Shown: {flight.label}, {options.rate:g} Hz."),
         results=results_markdown(outcome),
         parameters={"experiment": outcome.experiment.name, "flight": flight.label, "rate_hz": options.rate},
-        figures={title: file for title, file in drawn.items() if file.is_file()},
+        figures=figure_files(outcome, path),
     )
     write_navigation_recording(path, run)

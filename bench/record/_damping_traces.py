@@ -5,29 +5,28 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bench._damping_states import SHARES, SHOWN
 from bench.errors import Array
 from bench.record.traces import AXIS_COLOURS, ESTIMATE_COLOURS, Colour, Trace
-from bench.units import ARCMIN, DEG_PER_H, STANDARD_GRAVITY
 
 Estimates = Mapping[str, tuple[Array, Array]]  # errors and sigma, shape (n, k) each, by name
-NAVIGATION = {  # title and unit, by state
-    2: ("Latitude error, arcmin", ARCMIN),
-    3: ("Longitude error, arcmin", ARCMIN),
-    4: ("phi_E, arcmin", ARCMIN),
-    5: ("phi_N, arcmin", ARCMIN),
-    6: ("phi_U, arcmin", ARCMIN),
-    0: ("Velocity error east, m/s", 1.0),
-    1: ("Velocity error north, m/s", 1.0),
+NAVIGATION = {  # titles by state, in the order of the views
+    2: "Latitude error, arcmin",
+    3: "Longitude error, arcmin",
+    0: "Velocity error east, m/s",
+    1: "Velocity error north, m/s",
+    4: "phi_E, arcmin",
+    5: "phi_N, arcmin",
+    6: "phi_U, arcmin",
 }
 UNDAMPED = "undamped INS"
-ORDER = (2, 3, 0, 1, 4, 5, 6)  # of the views
 SENSORS = {
-    7: ("Left of accelerometer x, micro-g", 1e-6 * STANDARD_GRAVITY),
-    10: ("Left of eps x, deg/h (minus the gyro's error)", DEG_PER_H),
-    8: ("Left of accelerometer y, micro-g", 1e-6 * STANDARD_GRAVITY),
-    11: ("Left of eps y, deg/h", DEG_PER_H),
-    9: ("Left of accelerometer z, micro-g", 1e-6 * STANDARD_GRAVITY),
-    12: ("Left of eps z, deg/h", DEG_PER_H),
+    7: "Left of accelerometer x, micro-g",
+    10: "Left of eps x, deg/h (minus the gyro's error)",
+    8: "Left of accelerometer y, micro-g",
+    11: "Left of eps y, deg/h",
+    9: "Left of accelerometer z, micro-g",
+    12: "Left of eps z, deg/h",
 }
 FAINT = 0.45  # how much of its colour a band keeps
 
@@ -43,25 +42,24 @@ class Plot:
 
 def navigation_plots(estimates: Estimates, undamped: Array, colours: Mapping[str, Colour]) -> list[Plot]:
     """Return latitude, longitude, velocities and angles: what is left, +-3 sigma of every filter, and the free INS."""
-    return [_plot(f"error/{k}", *NAVIGATION[k], k, estimates, colours, undamped[:, k]) for k in ORDER]
+    return [_plot(f"error/{k}", title, k, estimates, colours, undamped[:, k]) for k, title in NAVIGATION.items()]
 
 
 def sensor_plots(estimates: Estimates, colours: Mapping[str, Colour]) -> list[Plot]:
     """Return what is left of the sensors' errors, with +-3 sigma."""
-    return [_plot(f"sensor/{k}", *about, k, estimates, colours, None) for k, about in SENSORS.items()]
+    return [_plot(f"sensor/{k}", title, k, estimates, colours, None) for k, title in SENSORS.items()]
 
 
 def _plot(
     entity: str,
     title: str,
-    scale: float,
     state: int,
     estimates: Estimates,
     colours: Mapping[str, Colour],
     free: Array | None,
 ) -> Plot:
     lines: list[tuple[Trace, float]] = []
-    shown = []
+    shown, scale = [], SHOWN[state].scale
     for k, (name, (errors, sigma)) in enumerate(estimates.items()):
         value, band = errors[:, state] / scale, 3 * sigma[:, state] / scale
         colour = colours[name]
@@ -91,15 +89,11 @@ def _extent(values: Array) -> tuple[float, float]:
 
 def weight_plots(weight: Array, gamma: Array) -> list[Plot]:
     """Return the share of filter 1 in the fused states, and gamma."""
-    groups = {
-        "Share of filter 1: position": {"latitude": 2, "longitude": 3},
-        "Share of filter 1: velocity": {"east": 0, "north": 1},
-        "Share of filter 1: attitude": {"phi_E": 4, "phi_N": 5, "phi_U": 6},
-    }
     plots = []
-    for k, (title, states) in enumerate(groups.items()):
+    for k, group in enumerate(("position", "velocity", "attitude")):
+        states = SHARES[group]
         values = weight[:, list(states.values())]
-        trace = Trace(f"fusion/{k}", title, tuple(states), AXIS_COLOURS[: len(states)], values)
+        trace = Trace(f"fusion/{k}", f"Share of filter 1: {group}", tuple(states), AXIS_COLOURS[: len(states)], values)
         plots.append(Plot(trace, ((trace, 1.5),)))
     trace = Trace("fusion/gamma", "gamma: distrust in filter 1", ("gamma",), ESTIMATE_COLOURS[:1], gamma[:, None])
     return [*plots, Plot(trace, ((trace, 1.5),))]

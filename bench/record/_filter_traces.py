@@ -3,7 +3,7 @@
 import numpy as np
 
 from bench._damp_report import HIGH
-from bench._damping_states import SHOWN
+from bench._damping_states import SHARES, SHOWN
 from bench.damp import Damped
 from bench.errors import Array, Indices
 from bench.record._navigation_traces import OVERVIEW, TimedPlot
@@ -11,13 +11,6 @@ from bench.record.traces import AXIS_COLOURS, ESTIMATE_COLOURS, FLOOR, TRUTH_COL
 
 BAND: Colour = (110, 150, 190)
 ESTIMATED, WEIGHT = ESTIMATE_COLOURS[1], ESTIMATE_COLOURS[0]  # of the filter, which is the second estimate
-SHARES = {  # columns of the weights, by title and name
-    "position": {"latitude": 2, "longitude": 3},
-    "velocity": {"east": 0, "north": 1},
-    "attitude": {"phi_E": 4, "phi_N": 5, "phi_U": 6},
-    "accelerometer errors": {"nabla_x": 7, "nabla_y": 8, "nabla_z": 9},
-    "gyro errors": {"eps_x": 10, "eps_y": 11, "eps_z": 12},
-}
 
 Line = tuple[str, Colour, Array, Array]  # name, colour, times and values
 

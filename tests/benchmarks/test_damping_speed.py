@@ -51,8 +51,7 @@ def damped(earth, dtheta, dvel, initial, v_ref, name):
     """Return samples of the INS and the filter's solution: all that a user calls."""
     solver = bench.solver("navigation", "navigation-frame", samples=2, height="held")
     estimate = solver.solve(dtheta, dvel, 1 / RATE, initial, earth)
-    columns = (getattr(estimate, field)[:: RATE // 2] for field in ("t", "q_eb", "v_e", "r_e"))
-    ins = InsSamples.of(bench.Trajectory(earth, *columns))
+    ins = InsSamples.of(estimate[:: RATE // 2])
     return ins, bench.solver("damping", name, model=MODEL).solve(ins, v_ref)
 
 
